@@ -11,7 +11,7 @@ const STREAM_BYTES_MAX: u64 = 1 << 28;
 /// Name of what comes on standard input.
 const STANDARD_INPUT: &str = "-";
 /// Bytes that are read at once: of a text, enough for several threads.
-const BUFFER_BYTES: usize = 1 << 18;
+const BUFFER_BYTES: usize = 1 << 20;
 /// First bytes that are looked at.
 const FIRST: usize = 8;
 /// Most bytes of a text that is read as a whole.
@@ -147,14 +147,8 @@ pub(super) fn push<T>(values: &mut Vec<T>, value: T) -> io::Result<()> {
     Ok(())
 }
 
-/// Appends values, or says that memory is used up.
-pub(super) fn append(values: &mut Vec<f64>, more: &[f64]) -> io::Result<()> {
-    reserve(values, more.len())?;
-    values.extend_from_slice(more);
-    Ok(())
-}
-
-fn reserve<T>(values: &mut Vec<T>, more: usize) -> io::Result<()> {
+/// Makes room for more values, or says that memory is used up.
+pub(super) fn reserve<T>(values: &mut Vec<T>, more: usize) -> io::Result<()> {
     let reserved = values.try_reserve(more);
     reserved.map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }

@@ -1,9 +1,12 @@
 //! Rows of plain numbers: without quotes, and without blanks around them.
 
-use rayon::prelude::*;
+use std::io;
 
 use super::decimal::Decimal;
+use crate::recording::column::Column;
+use crate::recording::input::reserve;
 use crate::recording::layout::words::DecimalSign;
+use crate::recording::time::column::{Ascent, Origin, TimeColumn};
 use crate::recording::time::stamp::Stamp;
 use crate::recording::time::unit::TimeUnit;
 
@@ -27,71 +30,127 @@ pub(super) struct PlainRows<'a> {
     pub(super) roles: &'a [Role],
     /// Units of the columns of the time.
     pub(super) units: &'a [TimeUnit],
-    /// Columns of the data.
-    pub(super) columns: usize,
+    /// Where times begin; none without a time.
+    pub(super) origin: Option<Origin>,
     pub(super) separator: u8,
 }
 
-/// The rows of a part of a text, up to the first line that is none.
+/// Places for the rows of a part of a text.
 #[derive(Debug, Default)]
-pub(super) struct PlainPart {
-    pub(super) count: usize,
-    /// Bytes of the rows with their ends.
-    pub(super) length: usize,
-    /// By column.
-    pub(super) values: Vec<Vec<f64>>,
+struct Places<'a> {
+    rows: usize,
+    /// Of each column of the data.
+    values: Vec<&'a mut [f64]>,
     /// None without a time.
-    pub(super) stamps: Vec<Stamp>,
+    stamps: &'a mut [f64],
+}
+
+/// The rows of a part of a text, up to the first line that is none and the first stamp that descends.
+#[derive(Clone, Copy, Debug, Default)]
+struct Taken {
+    count: usize,
+    /// Bytes of the rows with their ends.
+    length: usize,
+    ascent: Option<Ascent>,
 }
 
 impl PlainRows<'_> {
-    /// The rows at the beginning of some bytes, so many at most, in parts.
+    /// Appends the rows at the beginning of some bytes to the columns, so many at most: how many, and their bytes.
     ///
     /// A line that is no such row ends them: the general reader says what it is.
-    pub(super) fn at_start(&self, bytes: &[u8], most: usize) -> Vec<PlainPart> {
+    ///
+    /// # Errors
+    /// Memory is used up.
+    pub(super) fn append(
+        &self,
+        bytes: &[u8],
+        most: usize,
+        columns: &mut [Column],
+        mut time: Option<&mut TimeColumn>,
+    ) -> io::Result<(usize, usize)> {
         let threads = rayon::current_num_threads().min(bytes.len() / PART_BYTES);
         // A row has two bytes at least: where the bound may be met, rows are counted one by one.
-        if threads < 2 || most < bytes.len() / 2 {
-            return vec![self.part(bytes, most)];
+        let is_bounded = most < bytes.len() / 2;
+        let pieces = in_lines(bytes, if is_bounded { 1 } else { threads.max(1) });
+        let lines = |piece: &&[u8]| memchr::memchr_iter(b'\n', piece).count().min(most);
+        let counts: Vec<usize> = pieces.iter().map(lines).collect();
+        let mut places: Vec<Places> = counts.iter().map(|count| Places::of(*count)).collect();
+        let rows = columns.first().map_or(0, |column| column.values.len());
+        for column in &mut *columns {
+            let mut behind = with_zeros(&mut column.values, &counts)?;
+            for places in &mut places {
+                places.values.push(cut_off(&mut behind, places.rows));
+            }
         }
-        let parts = in_lines(bytes, threads).into_par_iter();
-        let mut parts: Vec<(bool, PlainPart)> = parts
-            .map(|part| {
-                let rows = self.part(part, usize::MAX);
-                (rows.length == part.len(), rows)
-            })
-            .collect();
-        // What stands behind a line that is no row is read again behind it.
-        if let Some(end) = parts.iter().position(|(is_whole, _)| !is_whole) {
-            parts.truncate(end + 1);
+        let stamps = time.as_ref().map_or(0, |time| time.stamps.len());
+        if let Some(time) = &mut time {
+            let mut behind = with_zeros(&mut time.stamps, &counts)?;
+            for places in &mut places {
+                places.stamps = cut_off(&mut behind, places.rows);
+            }
         }
-        parts.into_iter().map(|(_, rows)| rows).collect()
+        let taken = self.take_all(&pieces, places);
+        let (mut count, mut length) = (0, 0);
+        for ((taken, piece), lines) in taken.iter().zip(&pieces).zip(&counts) {
+            if let (Some(time), Some(ascent)) = (&mut time, taken.ascent)
+                && !time.goes_on_over(ascent)
+            {
+                break;
+            }
+            count += taken.count;
+            length += taken.length;
+            // What stands behind a line that is no row is read again behind it.
+            if taken.length < piece.len() || taken.count < *lines {
+                break;
+            }
+        }
+        for column in columns {
+            column.values.truncate(rows + count);
+        }
+        if let Some(time) = time {
+            time.stamps.truncate(stamps + count);
+        }
+        Ok((count, length))
     }
 
-    fn part(&self, bytes: &[u8], most: usize) -> PlainPart {
-        let mut part = PlainPart {
-            values: vec![Vec::new(); self.columns],
-            ..PlainPart::default()
-        };
-        let mut row = vec![0.0; self.columns];
-        while part.count < most
-            && let Some((stamp, length)) = self.row(&bytes[part.length..], &mut row)
+    /// The rows of each piece, on a thread of its own.
+    fn take_all(&self, pieces: &[&[u8]], places: Vec<Places>) -> Vec<Taken> {
+        let mut all = vec![Taken::default(); pieces.len()];
+        let mut places = places.into_iter();
+        // This thread takes one itself: to wake another costs as much as some rows.
+        if let (Some((own, others)), Some(own_places)) = (all.split_first_mut(), places.next()) {
+            rayon::in_place_scope(|scope| {
+                for ((taken, piece), places) in others.iter_mut().zip(&pieces[1..]).zip(places) {
+                    scope.spawn(|_| *taken = self.take(piece, places));
+                }
+                *own = self.take(pieces[0], own_places);
+            });
+        }
+        all
+    }
+
+    fn take(&self, bytes: &[u8], mut places: Places) -> Taken {
+        let mut taken = Taken::default();
+        while taken.count < places.rows
+            && let Some((stamp, length)) =
+                self.row(&bytes[taken.length..], taken.count, &mut places.values)
         {
-            for (values, value) in part.values.iter_mut().zip(&row) {
-                values.push(*value);
+            if let Some(origin) = self.origin {
+                let Some(ascent) = Ascent::with(taken.ascent, stamp) else {
+                    break;
+                };
+                taken.ascent = Some(ascent);
+                places.stamps[taken.count] = origin.to(stamp);
             }
-            if !self.units.is_empty() {
-                part.stamps.push(stamp);
-            }
-            part.count += 1;
-            part.length += length;
+            taken.count += 1;
+            taken.length += length;
         }
-        part
+        taken
     }
 
-    /// Stamp, numbers and length of the row at the beginning of some bytes, with its end.
+    /// Stamp and length, with its end, of the row at the beginning of some bytes; its numbers go to their places.
     #[inline]
-    fn row(&self, bytes: &[u8], values: &mut [f64]) -> Option<(Stamp, usize)> {
+    fn row(&self, bytes: &[u8], at: usize, values: &mut [&mut [f64]]) -> Option<(Stamp, usize)> {
         // Comments do not begin as numbers do.
         if !matches!(bytes.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
             return None;
@@ -103,7 +162,7 @@ impl PlainRows<'_> {
                 Role::Nothing => plain_length(rest, self.separator),
                 Role::Data(position) => {
                     let (value, length) = plain_number(rest, self.separator)?;
-                    values[position] = value;
+                    values[position][at] = value;
                     length
                 }
                 Role::Time(position) => {
@@ -123,6 +182,30 @@ impl PlainRows<'_> {
         }
         Some((stamp, bytes.len() - rest.len()))
     }
+}
+
+impl Places<'_> {
+    fn of(rows: usize) -> Self {
+        Self {
+            rows,
+            ..Self::default()
+        }
+    }
+}
+
+/// Lengthens a column by zeros for rows of several parts, and gives the places behind what stands in it.
+fn with_zeros<'a>(values: &'a mut Vec<f64>, counts: &[usize]) -> io::Result<&'a mut [f64]> {
+    let (end, more) = (values.len(), counts.iter().sum());
+    reserve(values, more)?;
+    values.resize(end + more, 0.0);
+    Ok(&mut values[end..])
+}
+
+/// The first of some places, which are then the others.
+fn cut_off<'a>(places: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
+    let (own, others) = std::mem::take(places).split_at_mut(count);
+    *places = others;
+    own
 }
 
 /// Bytes in so many parts of about one length, each of which ends with a line.
@@ -189,4 +272,95 @@ pub(super) fn plain_length(rest: &[u8], separator: u8) -> usize {
         .iter()
         .position(|byte| *byte == separator || !is_plain(byte));
     end.unwrap_or(rest.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two columns and a time, of which `odd` stands in the place of one row.
+    fn text(rows: usize, odd_row: usize, odd: &str) -> String {
+        let row = |row: usize| match row == odd_row {
+            true => odd.to_owned(),
+            false => format!("{row}.5,{},-{row}e-3\n", row % 7),
+        };
+        (0..rows).map(row).collect()
+    }
+
+    /// Columns behind a first row, and what so many threads append of some bytes.
+    fn appended(
+        bytes: &[u8],
+        most: usize,
+        threads: usize,
+    ) -> (Vec<Column>, TimeColumn, (usize, usize)) {
+        let mut columns = vec![Column::default(); 2];
+        let mut time = TimeColumn::new("t".to_owned(), vec![TimeUnit::Seconds], false);
+        time.take(Stamp {
+            ticks: 0,
+            resolution: 1,
+        })
+        .expect("memory");
+        for column in &mut columns {
+            column.values.push(0.0);
+        }
+        let rows = PlainRows {
+            roles: &[Role::Time(0), Role::Data(1), Role::Data(0)],
+            units: &[TimeUnit::Seconds],
+            origin: Some(time.origin()),
+            separator: b',',
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.expect("threads");
+        let found = pool.install(|| rows.append(bytes, most, &mut columns, Some(&mut time)));
+        (columns, time, found.expect("memory"))
+    }
+
+    #[test]
+    fn rows_are_the_same_on_any_number_of_threads() {
+        let all = usize::MAX;
+        for (odd_row, odd, most) in [
+            (0, "x\n", all),
+            (3000, "# pause\n", all),
+            // A clock that falls back is looked at row by row, wherever a part begins.
+            (3001, "7.5,1,2\n", all),
+            (9999, "9999.5,2,3", all),
+            (20_000, "", all),
+            (20_000, "", 5),
+        ] {
+            let text = text(10_000, odd_row, odd);
+            let (alone, time, found) = appended(text.as_bytes(), most, 1);
+            assert_eq!(found.0, odd_row.min(10_000).min(most), "{odd}");
+            let end = text
+                .split_inclusive('\n')
+                .take(found.0)
+                .map(str::len)
+                .sum::<usize>();
+            assert_eq!(found.1, end, "{odd}");
+            for threads in [2, 3, 4, 5] {
+                let (columns, own_time, own) = appended(text.as_bytes(), most, threads);
+                assert_eq!(own, found, "{odd} {threads}");
+                assert_eq!(own_time.stamps, time.stamps, "{odd} {threads}");
+                assert_eq!(
+                    format!("{own_time:?}"),
+                    format!("{time:?}"),
+                    "{odd} {threads}"
+                );
+                for (column, alone) in columns.iter().zip(&alone) {
+                    assert_eq!(column.values, alone.values, "{odd} {threads}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_row_may_begin_a_part() {
+        // A descent at each place about the border between two parts.
+        let lines = text(8000, 9000, "");
+        let middle = lines[..lines.len() / 2].matches('\n').count();
+        for odd_row in middle - 3..middle + 3 {
+            let text = text(8000, odd_row, "1.5,1,1\n");
+            let (.., found) = appended(text.as_bytes(), usize::MAX, 2);
+            assert_eq!(found.0, odd_row);
+        }
+    }
 }

@@ -10,7 +10,7 @@ use super::plain::{PlainRows, Role};
 use super::transcode::{as_utf8, encoding_of};
 use crate::recording::column::{Column, Columns, LinesBetween, RowLines};
 use crate::recording::error::{LogError, Place};
-use crate::recording::input::{Input, append, failure, push};
+use crate::recording::input::{Input, failure, push};
 use crate::recording::layout::columns::{Chosen, Selection};
 use crate::recording::layout::words::{DecimalSign, MissingWords};
 use crate::recording::layout::{Fault, HeadLine, Layout, LayoutError, find, finite_in, is_number};
@@ -354,27 +354,16 @@ impl Table {
         let Some(separator) = self.plain_separator.filter(|_| self.seen() > 1) else {
             return Ok((0, 0));
         };
-        let units = self.columns.time.as_ref().map(|time| &time.units[..]);
+        let Columns { data, time, .. } = &mut self.columns;
+        let units = time.as_ref().map(|time| time.units.clone());
         let rows = PlainRows {
             roles: &self.roles,
-            units: units.unwrap_or_default(),
-            columns: self.columns.data.len(),
+            units: &units.unwrap_or_default(),
+            origin: time.as_ref().map(TimeColumn::origin),
             separator,
         };
-        let first = self.columns.rows();
-        let (mut count, mut length) = (0, 0);
-        for part in rows.at_start(bytes, most) {
-            count += part.count;
-            length += part.length;
-            for (column, values) in self.columns.data.iter_mut().zip(&part.values) {
-                append(&mut column.values, values)?;
-            }
-            if let Some(time) = &mut self.columns.time {
-                for stamp in part.stamps {
-                    time.take(stamp)?;
-                }
-            }
-        }
+        let first = data.first().map_or(0, |column| column.values.len());
+        let (count, length) = rows.append(bytes, most, data, time.as_mut())?;
         // The lines of the others follow.
         if let Some(lines) = self.columns.lines.as_mut().filter(|_| count > 0) {
             lines.take(first, number)?;

@@ -105,6 +105,29 @@ impl TimeColumn {
         Stamp::read(cell, self.units[column], decimal)
     }
 
+    /// Where the times of stamps that ascend begin.
+    pub(in crate::recording) fn origin(&self) -> Origin {
+        Origin {
+            first: self.clock.first,
+            begun_again: self.clock.begun_again,
+        }
+    }
+
+    /// Goes on over stamps whose times stand in [`Self::stamps`]; whether they follow the last one.
+    pub(in crate::recording) fn goes_on_over(&mut self, ascent: Ascent) -> bool {
+        let clock = &mut self.clock;
+        let on_clock = |ticks: i128| ticks.saturating_add(clock.begun_again);
+        if on_clock(ascent.first) < clock.last {
+            return false;
+        }
+        let last = on_clock(ascent.last);
+        let before = ascent.before_last.map_or(clock.last, on_clock);
+        clock.step = last.saturating_sub(before);
+        clock.last = last;
+        clock.resolution = clock.resolution.min(ascent.resolution);
+        true
+    }
+
     /// Takes the stamp of the next row; an error says that memory is used up.
     pub(in crate::recording) fn take(&mut self, stamp: Stamp) -> io::Result<()> {
         let unit_ticks = || self.units.last().map_or(TICKS, |unit| ticks_of(*unit));
@@ -127,8 +150,56 @@ impl TimeColumn {
         }
         clock.step = ticks.saturating_sub(clock.last);
         clock.last = ticks;
-        let from_first = ticks.saturating_sub(clock.first);
-        push(&mut self.stamps, as_float(from_first) / as_float(TICKS))
+        let time = self.origin().to(stamp);
+        push(&mut self.stamps, time)
+    }
+}
+
+/// Stamps of some rows that ascend.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::recording) struct Ascent {
+    first: i128,
+    /// None of a single stamp.
+    before_last: Option<i128>,
+    last: i128,
+    resolution: i128,
+}
+
+impl Ascent {
+    /// Takes another stamp, if it is none before the last one.
+    #[inline]
+    pub(in crate::recording) fn with(so_far: Option<Self>, stamp: Stamp) -> Option<Self> {
+        let Stamp { ticks, resolution } = stamp;
+        let Some(so_far) = so_far else {
+            return Some(Self {
+                first: ticks,
+                before_last: None,
+                last: ticks,
+                resolution,
+            });
+        };
+        (ticks >= so_far.last).then(|| Self {
+            first: so_far.first,
+            before_last: Some(so_far.last),
+            last: ticks,
+            resolution: resolution.min(so_far.resolution),
+        })
+    }
+}
+
+/// The first stamp, as far as the clock has not begun again since.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::recording) struct Origin {
+    first: i128,
+    begun_again: i128,
+}
+
+impl Origin {
+    /// Time of a stamp, s; of a counter samples.
+    #[inline]
+    pub(in crate::recording) fn to(self, stamp: Stamp) -> f64 {
+        let ticks = stamp.ticks.saturating_add(self.begun_again);
+        as_float(ticks.saturating_sub(self.first)) / as_float(TICKS)
     }
 }
 
