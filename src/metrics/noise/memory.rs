@@ -31,6 +31,9 @@ const LAGS_PER_RECORD: usize = 64;
 /// Largest such lag, samples.
 const LAG_MAX: usize = 1 << 16;
 
+/// Samples that all lags see before the next ones.
+const PIECE: usize = 1 << 15;
+
 /// Ratio of one lag to the next.
 const LAG_RATIO: f64 = 1.15;
 
@@ -63,15 +66,7 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
     }
     let mean = interval::mean_of_present(values);
     let deviations: Vec<f64> = values.iter().map(|value| value - mean).collect();
-    let covariances: Vec<f64> = lags
-        .par_chunks(SIDE_BY_SIDE)
-        .flat_map_iter(|lags| {
-            let later: Vec<&[f64]> = lags.iter().map(|lag| &deviations[*lag..]).collect();
-            let found = products(&deviations, &later);
-            let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
-            found.into_iter().map(mean)
-        })
-        .collect();
+    let covariances = lagged_means(&deviations, &lags);
     let far: Vec<f64> = lags
         .iter()
         .zip(&covariances)
@@ -98,6 +93,32 @@ pub fn correlation_length_samples(values: &[f64]) -> Option<usize> {
         }
     }
     (length <= largest / 4).then_some(length)
+}
+
+/// Mean products of the deviations at some lags, piece by piece: all lags see a piece while it is in the cache.
+fn lagged_means(deviations: &[f64], lags: &[usize]) -> Vec<f64> {
+    let count = deviations.len();
+    let starts: Vec<usize> = (0..count).step_by(PIECE).collect();
+    let of_pieces = starts.into_par_iter().map(|start| {
+        let end = (start + PIECE).min(count);
+        let later = |lag: &usize| &deviations[(start + lag).min(count)..(end + lag).min(count)];
+        let few = lags.chunks(SIDE_BY_SIDE).flat_map(|lags| {
+            let later: Vec<&[f64]> = lags.iter().map(later).collect();
+            products(&deviations[start..end], &later)
+        });
+        few.collect()
+    });
+    let of_pieces: Vec<Vec<(f64, usize)>> = of_pieces.collect();
+    // In the order of the pieces, whichever thread was first.
+    let mut all = vec![(0.0, 0); lags.len()];
+    for piece in of_pieces {
+        for ((sum, pairs), (more, more_pairs)) in all.iter_mut().zip(piece) {
+            *sum += more;
+            *pairs += more_pairs;
+        }
+    }
+    let mean = |(sum, pairs): (f64, usize)| sum / pairs.max(1) as f64;
+    all.into_iter().map(mean).collect()
 }
 
 /// Shortest averaging time of a fit to a record that nothing is known of, s: four correlation
