@@ -110,7 +110,7 @@ pub(crate) use pipeline::{FIXED_POINT_ONLY, OVERFLOWS};
 pub use pool::aggregate::aggregate;
 pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
-pub use quality::examine::examine_log;
+pub use quality::examine::Examination;
 pub use quality::outliers::{Outlier, Outliers, find_outliers};
 pub use quality::smoothing::{Smoothed, Smoothing, find_smoothing};
 pub use record::{Dwell, FilterFacts, Motion, RateGain, Record, Settings, Staircase};

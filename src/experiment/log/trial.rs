@@ -14,7 +14,7 @@ use crate::experiment::pipeline_metrics;
 use crate::experiment::run::{Cut, GyroRecord, Progress, RecordLength, Unfinished, allan_options};
 use crate::gate::Verdict;
 use crate::metrics::{
-    ChannelMetrics, Dwell, Motion, Settings, Staircase, Unavailable, examine_log, find_dwells,
+    ChannelMetrics, Dwell, Examination, Motion, Settings, Staircase, Unavailable, find_dwells,
     is_sample_or_longer, measure_present, record_fit_tau_min_s,
 };
 use crate::recording::{Log, LogMotion};
@@ -195,11 +195,11 @@ fn measured_channels(
     let raw = &cut.record.raw_deg_per_h;
     let (raw, others): (_, Vec<_>) = rayon::join(
         || {
-            let measured = match raw.iter().any(|word| word.is_nan()) {
+            let measure = || match raw.iter().any(|word| word.is_nan()) {
                 true => measure_present(&cut.of(raw, raw), cut.settings),
                 false => cut.measure_raw(),
             };
-            examined(RAW, measured, raw, cut, is_tau_given)
+            examined(RAW, measure, raw, cut, is_tau_given)
         },
         || {
             let filters = filters.par_iter();
@@ -209,11 +209,11 @@ fn measured_channels(
         },
     );
     let compensated = cut.record.compensated_deg_per_h.as_deref().map(|words| {
-        let measured = match words.iter().any(|word| word.is_nan()) {
+        let measure = || match words.iter().any(|word| word.is_nan()) {
             true => measure_present(&cut.of(words, words), cut.settings),
             false => cut.measure_compensated(),
         };
-        examined(COMPENSATED, measured, words, cut, is_tau_given)
+        examined(COMPENSATED, measure, words, cut, is_tau_given)
     });
     let own = raw.into_iter().chain(compensated.into_iter().flatten());
     own.chain(others).collect()
@@ -274,14 +274,15 @@ pub(super) fn metric_settings(
 /// A measured channel, and beside it what it measures without its outliers, if it has any.
 fn examined(
     name: &str,
-    mut metrics: ChannelMetrics,
+    measure: impl FnOnce() -> ChannelMetrics + Send,
     words: &[f64],
     cut: &Cut,
     is_tau_given: bool,
 ) -> Vec<(String, ChannelMetrics)> {
     let (first, settings) = (cut.length.warm_up, cut.settings);
     let record = cut.of(words, words);
-    let rest = examine_log(&record, settings, is_tau_given, first, &mut metrics);
+    let (mut metrics, found) = rayon::join(measure, || Examination::of(&record, settings));
+    let rest = found.enter(&record, settings, is_tau_given, first, &mut metrics);
     let rest = rest.map(|rest| (format!("{name}{WITHOUT_OUTLIERS}"), rest));
     std::iter::once((name.to_owned(), metrics))
         .chain(rest)

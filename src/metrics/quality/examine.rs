@@ -1,7 +1,7 @@
 //! A recorded log examined: its outliers, and what it measures without them.
 
 use super::outliers::{OUTLIERS, Outliers, find_outliers};
-use super::smoothing::{SMOOTHING_TIME, find_smoothing};
+use super::smoothing::{SMOOTHING_TIME, Smoothed, find_smoothing};
 use crate::metrics::estimate::outlier_sheet::OutlierEntry;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -11,49 +11,83 @@ use crate::metrics::noise::memory::record_fit_tau_min_s;
 use crate::metrics::record::{Motion, Record, SAMPLES_MIN, Settings};
 use crate::metrics::sine::fit::{SwingClock, fit_swing};
 
-/// Examines the words of a log that was measured, and gives what it measures without its outliers;
-/// nothing where it has none.
-///
-/// * `first_index`: index in the log of the first word of the record.
-/// * `is_fit_tau_min_given`: whether the shortest averaging time of the fit stands, or follows the words.
-///
-/// Of a swing the residuals about the fitted sine are looked at. Without outliers means sums leave out
-/// what is missing: an Allan variance every difference that touches it, nothing is put in its place.
-pub fn examine_log(
+/// What the words of a log show of themselves: outliers, and an averaging.
+#[derive(Clone, Debug)]
+pub struct Examination {
+    outliers: Result<Outliers, Unavailable>,
+    smoothed: Result<Smoothed, Unavailable>,
+}
+
+impl Examination {
+    /// Examines the words of a record; of a swing the residuals about the fitted sine. A record that is too
+    /// short shows nothing.
+    #[must_use]
+    pub fn of(record: &Record, settings: &Settings) -> Self {
+        let words = record.channel_deg_per_h;
+        if words.len() < SAMPLES_MIN {
+            let reason = "the record is too short for it";
+            return Self {
+                outliers: Err(reason.into()),
+                smoothed: Err(reason.into()),
+            };
+        }
+        let residuals = about_motion(record, &settings.motion);
+        let mut still = residuals.unwrap_or_else(|| words.to_vec());
+        let outliers = find_present(&still);
+        if let Ok(outliers) = &outliers {
+            outliers.leave_out(&mut still);
+        }
+        Self {
+            outliers,
+            smoothed: find_smoothing(&still, record.sample_period_s),
+        }
+    }
+
+    /// Enters what was found into the metrics of the same words, and gives what they measure without the
+    /// outliers; nothing where there are none.
+    ///
+    /// * `first_index`: index in the log of the first word of the record.
+    /// * `is_fit_tau_min_given`: whether the shortest averaging time of the fit stands, or follows the words.
+    ///
+    /// Without outliers means sums leave out what is missing: an Allan variance every difference that touches
+    /// it, nothing is put in its place.
+    pub fn enter(
+        self,
+        record: &Record,
+        settings: &Settings,
+        is_fit_tau_min_given: bool,
+        first_index: usize,
+        metrics: &mut ChannelMetrics,
+    ) -> Option<ChannelMetrics> {
+        if metrics.error.is_some() {
+            for key in [&OUTLIERS, &SMOOTHING_TIME] {
+                metrics.miss(key, "the record is too short for it");
+            }
+            return None;
+        }
+        put_smoothing(self.smoothed, metrics);
+        let outliers = match self.outliers {
+            Ok(outliers) => outliers,
+            Err(reason) => {
+                metrics.miss(&OUTLIERS, reason);
+                return None;
+            }
+        };
+        let place = (first_index, record.first_stamp_s, record.sample_period_s);
+        put_outliers(&outliers, place, metrics);
+        (!outliers.events.is_empty())
+            .then(|| without(&outliers, record, settings, is_fit_tau_min_given))
+    }
+}
+
+/// What a record measures without its outliers.
+fn without(
+    outliers: &Outliers,
     record: &Record,
     settings: &Settings,
     is_fit_tau_min_given: bool,
-    first_index: usize,
-    metrics: &mut ChannelMetrics,
-) -> Option<ChannelMetrics> {
-    let words = record.channel_deg_per_h;
-    if words.len() < SAMPLES_MIN || metrics.error.is_some() {
-        for key in [&OUTLIERS, &SMOOTHING_TIME] {
-            metrics.miss(key, "the record is too short for it");
-        }
-        return None;
-    }
-    let residuals = about_motion(record, &settings.motion);
-    let mut still = residuals.unwrap_or_else(|| words.to_vec());
-    let found = find_present(&still);
-    if let Ok(outliers) = &found {
-        outliers.leave_out(&mut still);
-    }
-    put_smoothing(&still, record.sample_period_s, metrics);
-    drop(still);
-    let outliers = match found {
-        Ok(outliers) => outliers,
-        Err(reason) => {
-            metrics.miss(&OUTLIERS, reason);
-            return None;
-        }
-    };
-    let place = (first_index, record.first_stamp_s, record.sample_period_s);
-    put_outliers(&outliers, place, metrics);
-    if outliers.events.is_empty() {
-        return None;
-    }
-    let mut rest = words.to_vec();
+) -> ChannelMetrics {
+    let mut rest = record.channel_deg_per_h.to_vec();
     outliers.leave_out(&mut rest);
     let fit_tau_min_s = if is_fit_tau_min_given {
         settings.fit_tau_min_s
@@ -69,7 +103,7 @@ pub fn examine_log(
         raw_deg_per_h: &rest,
         ..*record
     };
-    Some(measure_present(&rest_record, &settings))
+    measure_present(&rest_record, &settings)
 }
 
 /// The outliers of a record of which words may be missing: those on either side of a gap are neighbours.
@@ -97,9 +131,9 @@ fn about_motion(record: &Record, motion: &Motion) -> Option<Vec<f64>> {
     Some(fit.residuals(words))
 }
 
-/// Enters the averaging time of a log that was smoothed, words about the motion and without outliers.
-fn put_smoothing(words: &[f64], sample_period_s: f64, metrics: &mut ChannelMetrics) {
-    match find_smoothing(words, sample_period_s) {
+/// Enters the averaging time of a log that was smoothed.
+fn put_smoothing(smoothed: Result<Smoothed, Unavailable>, metrics: &mut ChannelMetrics) {
+    match smoothed {
         Ok(found) => {
             metrics.put(&SMOOTHING_TIME, found.averaging_time_s);
             metrics.smoothing = Some(found.like.words());

@@ -342,7 +342,7 @@ mod tests {
     use super::*;
     use crate::metrics::catalogue::known_metrics;
     use crate::metrics::noise::memory::record_fit_tau_min_s;
-    use crate::metrics::quality::examine::examine_log;
+    use crate::metrics::quality::examine::Examination;
     use crate::metrics::record::Record;
     use crate::metrics::{Estimate, measure};
     use crate::random::Streams;
@@ -392,7 +392,8 @@ mod tests {
         };
         let settings = settings(words);
         let mut metrics = measure(&record, &settings, None);
-        let _ = examine_log(&record, &settings, false, 0, &mut metrics);
+        let examination = Examination::of(&record, &settings);
+        let _ = examination.enter(&record, &settings, false, 0, &mut metrics);
         metrics
     }
 

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::record::Stretch;
 use crate::recording::bounds::{OutOfBounds, check_rate};
 use crate::recording::column::Columns;
@@ -22,6 +24,8 @@ const STEP_CORRELATION: f64 = 0.5;
 const BESIDE_MIN: usize = 8;
 /// Fewest words of which that is asked.
 const CORRELATED_MIN: usize = 100;
+/// Numbers that one thread turns into rates at a time.
+const PART: usize = 1 << 16;
 
 /// Numbers of a column on their way to words.
 pub(super) struct Words<'a> {
@@ -72,9 +76,7 @@ impl Words<'_> {
             && self.conversion.running.is_none()
             && self.spacing.spanned.is_empty()
         {
-            for (row, value) in values.iter_mut().enumerate() {
-                *value = self.rate(*value, row)?;
-            }
+            self.to_rates(&mut values)?;
             return Ok(Taken {
                 stretches: vec![Stretch::of(&values, 0..values.len())],
                 bridges: self.assumed(&values, 0),
@@ -107,6 +109,21 @@ impl Words<'_> {
                 .push(Stretch::of(&all.words, first..all.words.len()));
         }
         Ok(all)
+    }
+
+    /// Makes rates of the numbers of all rows.
+    fn to_rates(&self, values: &mut [f64]) -> Result<(), LogError> {
+        let parts = values.par_chunks_mut(PART).enumerate();
+        let parts = parts.map(|(index, values)| {
+            let mut rows = (index * PART..).zip(values);
+            rows.try_for_each(|(row, value)| {
+                *value = self.rate(*value, row)?;
+                Ok(())
+            })
+        });
+        let parts: Vec<Result<(), LogError>> = parts.collect();
+        // The first complaint of the file, whichever thread was first.
+        parts.into_iter().collect()
     }
 
     /// Some rows with the samples that are missing between them.
