@@ -25,6 +25,7 @@ mod datapath;
 mod exact;
 mod format;
 mod kinds;
+mod line;
 pub mod lms;
 mod pipeline;
 mod registers;

@@ -3,7 +3,7 @@
 
 use super::exact::{CONSTANT_BITS_MAX, Exact, constant, scaled};
 use super::format::{Format, Stored};
-use super::signal::{Signal, SignalName};
+use super::signal::{Overflows, Signal, SignalName};
 use crate::fpga::error::FpgaError;
 
 /// Formats of the signals.
@@ -97,6 +97,22 @@ impl LmsFormats {
         let product_scale = self.input.fraction_bits + self.intermediate.fraction_bits;
         let scales = [self.weight.fraction_bits, product_scale];
         self.weight.store_sum([i128::from(weight), product], scales)
+    }
+
+    /// Corrects every weight by the step t of the taps; words beyond the ends are counted.
+    ///
+    /// * `line`: regressors, newest first.
+    pub(super) fn correct(
+        &self,
+        weights: &mut [i64],
+        line: &[i64],
+        step: i64,
+        overflows: &mut Overflows,
+    ) {
+        for (w_j, l_j) in weights.iter_mut().zip(line) {
+            let product = i128::from(*l_j) * i128::from(step);
+            *w_j = overflows.counted(SignalName::W, self.weight(*w_j, product));
+        }
     }
 }
 
