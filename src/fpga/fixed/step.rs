@@ -4,6 +4,7 @@
 use super::exact::{CONSTANT_BITS_MAX, Exact, constant, scaled};
 use super::format::{Format, Stored};
 use super::signal::{Overflows, Signal, SignalName};
+use super::taps::TapFormats;
 use crate::fpga::error::FpgaError;
 
 /// Formats of the signals.
@@ -41,6 +42,17 @@ impl LmsFormats {
         .map(|(name, format)| Signal { name, format })
     }
 
+    /// Those that every filter of taps has.
+    #[must_use]
+    pub fn of_taps(&self) -> TapFormats {
+        TapFormats {
+            input: self.input,
+            desired: self.desired,
+            weight: self.weight,
+            output: self.output,
+        }
+    }
+
     /// Refuses formats that the models do not hold.
     ///
     /// * `by_sign`: whether t is k with a sign.
@@ -60,19 +72,6 @@ impl LmsFormats {
         step.check("exact t", t)?;
         let weight = Exact::word(self.weight).plus(Exact::product(x, t));
         weight.check("exact W", self.weight)
-    }
-
-    /// `Q_y` of a sum of products of L and W.
-    pub(super) fn output(&self, sum: i128) -> Stored {
-        let scale = self.input.fraction_bits + self.weight.fraction_bits;
-        self.output.store(sum, scale)
-    }
-
-    /// `Q_y(d - y)`.
-    pub(super) fn error(&self, desired: i64, output: i64) -> Stored {
-        let scales = [self.desired.fraction_bits, self.output.fraction_bits];
-        let values = [i128::from(desired), -i128::from(output)];
-        self.output.store_sum(values, scales)
     }
 
     /// `Q_t(e*k)`.

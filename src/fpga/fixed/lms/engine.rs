@@ -53,12 +53,13 @@ impl FixedLmsEngine {
 impl FixedEngine for FixedLmsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let formats = self.config.formats;
+        let taps = formats.of_taps();
         self.line.shift(pair.input);
         let (gain, is_definite) = self.gain();
         let overflows = &mut self.health.overflows;
         let sum = dot(0, self.line.words(), &self.weights);
-        let output = overflows.counted(SignalName::Y, formats.output(sum));
-        let error = overflows.counted(SignalName::Y, formats.error(pair.desired, output));
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         let product = i128::from(error) * i128::from(gain);
         let step = overflows.counted(SignalName::T, formats.step(product));
         formats.correct(&mut self.weights, self.line.words(), step, overflows);

@@ -84,7 +84,7 @@ impl FixedMachine for FixedLmsMachine {
             }
             LmsState::OutWriting => {
                 let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.output(sum).code;
+                self.registers.output = self.config.formats.of_taps().output(sum).code;
                 self.registers.state = LmsState::Err;
             }
             LmsState::Err => self.form_error(datapath),
@@ -118,7 +118,8 @@ impl FixedLmsMachine {
             desired, output, ..
         } = self.registers;
         datapath.count_sum();
-        self.registers.error = self.config.formats.error(desired, output).code;
+        let taps = self.config.formats.of_taps();
+        self.registers.error = taps.error(desired, output).code;
         if let Step::OverEnergy(step) = self.config.step {
             datapath.count_quotient();
             let denominator = self.registers.denominator;

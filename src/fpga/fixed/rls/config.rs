@@ -5,6 +5,7 @@ use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::exact::{Exact, constant, scaled};
 use crate::fpga::fixed::format::{Format, Stored};
 use crate::fpga::fixed::signal::{Signal, SignalName};
+use crate::fpga::fixed::taps::TapFormats;
 
 /// Formats of the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +43,17 @@ impl RlsFormats {
             (SignalName::Y, self.output),
         ]
         .map(|(name, format)| Signal { name, format })
+    }
+
+    /// Those that every filter of taps has.
+    #[must_use]
+    pub fn of_taps(&self) -> TapFormats {
+        TapFormats {
+            input: self.input,
+            desired: self.desired,
+            weight: self.weight,
+            output: self.output,
+        }
     }
 }
 
@@ -226,21 +238,6 @@ impl FixedRlsConfig {
         let grown = i128::from(corrected.code) * i128::from(factor);
         let scale = f.inverse.fraction_bits + self.inverse_alpha_fraction_bits;
         [corrected, f.inverse.store(grown, scale)]
-    }
-
-    /// `Q_y` of a sum of products of L and W.
-    pub(super) fn output(&self, sum: i128) -> Stored {
-        let f = &self.formats;
-        let scale = f.input.fraction_bits + f.weight.fraction_bits;
-        f.output.store(sum, scale)
-    }
-
-    /// `Q_y(d - y)`.
-    pub(super) fn error(&self, desired: i64, output: i64) -> Stored {
-        let f = &self.formats;
-        let scales = [f.desired.fraction_bits, f.output.fraction_bits];
-        let values = [i128::from(desired), -i128::from(output)];
-        f.output.store_sum(values, scales)
     }
 
     /// `Q_W(W + k*e)`.

@@ -86,6 +86,7 @@ impl FixedEngine for FixedRlsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let config = self.config;
         let p = config.tap_count;
+        let taps = config.formats.of_taps();
         self.line.shift(pair.input);
         for i in 0..p {
             let sum = dot(0, self.line.words(), &self.inverse[i * p..(i + 1) * p]);
@@ -102,8 +103,8 @@ impl FixedEngine for FixedRlsEngine {
         self.correct();
         let overflows = &mut self.health.overflows;
         let sum = dot(0, self.line.words(), &self.weights);
-        let output = overflows.counted(SignalName::Y, config.output(sum));
-        let error = overflows.counted(SignalName::Y, config.error(pair.desired, output));
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         for i in 0..p {
             let product = i128::from(self.gain[i]) * i128::from(error);
             let weight = config.weight(self.weights[i], product);

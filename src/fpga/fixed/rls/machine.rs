@@ -150,7 +150,7 @@ impl FixedMachine for FixedRlsMachine {
             FixedRlsState::RfrMirroring => self.correct_mirror(datapath),
             FixedRlsState::OutWriting => {
                 let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.output(sum).code;
+                self.registers.output = self.config.formats.of_taps().output(sum).code;
                 self.registers.state = FixedRlsState::RfwReading;
             }
             FixedRlsState::RfwReading => self.weight_read(datapath),
@@ -243,7 +243,8 @@ impl FixedRlsMachine {
         } = self.registers;
         if !self.registers.second {
             datapath.count_sum();
-            self.registers.error = self.config.error(desired, output).code;
+            let taps = self.config.formats.of_taps();
+            self.registers.error = taps.error(desired, output).code;
             self.registers.second = true;
             return;
         }

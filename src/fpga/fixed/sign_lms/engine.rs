@@ -51,6 +51,7 @@ impl FixedEngine for FixedSignLmsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let config = self.config;
         let formats = config.formats;
+        let taps = formats.of_taps();
         self.line.shift(pair.input);
         // The recursion of the hardware is exact, and so the sum itself.
         let norm = dot(0, self.line.words(), self.line.words());
@@ -58,8 +59,8 @@ impl FixedEngine for FixedSignLmsEngine {
         let denominator = overflows.counted(SignalName::Den, config.denominator(norm));
         let gain = overflows.counted(SignalName::K, config.step.gain(&formats, denominator));
         let sum = dot(0, self.line.words(), &self.weights);
-        let output = overflows.counted(SignalName::Y, formats.output(sum));
-        let error = overflows.counted(SignalName::Y, formats.error(pair.desired, output));
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         let step = if self.is_held(error) {
             0
         } else {

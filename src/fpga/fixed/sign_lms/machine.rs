@@ -92,7 +92,7 @@ impl FixedMachine for FixedSignLmsMachine {
             SignLmsState::OutReading => self.accumulate_output(datapath),
             SignLmsState::OutWriting => {
                 let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.output(sum).code;
+                self.registers.output = self.config.formats.of_taps().output(sum).code;
                 self.registers.state = SignLmsState::Err;
             }
             SignLmsState::Err => self.form_error(datapath),
@@ -150,7 +150,7 @@ impl FixedSignLmsMachine {
         let formats = &self.config.formats;
         datapath.count_sum();
         datapath.count_quotient();
-        self.registers.error = formats.error(desired, output).code;
+        self.registers.error = formats.of_taps().error(desired, output).code;
         self.registers.gain = self.config.step.gain(formats, denominator).code;
         self.registers.state = SignLmsState::Gain;
     }
