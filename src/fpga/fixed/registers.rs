@@ -3,6 +3,7 @@
 use super::CodePair;
 use super::datapath::FixedDatapath;
 use super::step::LmsFormats;
+use super::taps::TapFormats;
 use crate::fpga::registers::ControlState;
 
 /// Registers, named as in the RTL. One that a pipeline has not built stays at zero.
@@ -157,10 +158,7 @@ impl<S: ControlState> FixedRegisters<S> {
             self.last_sum(datapath)
         };
         self.product = datapath.multiply(a, b);
-        self.j = (self.j + 1) % tap_count;
-        if self.j == 0 {
-            self.state = done;
-        }
+        self.next_tap(tap_count, done);
     }
 
     /// The last sum of a dot product, in its writing clock: `ACC + P`.
@@ -168,45 +166,65 @@ impl<S: ControlState> FixedRegisters<S> {
         datapath.add(self.accumulator, self.product)
     }
 
-    /// Reading clock of a weight behind the ring of L: `P <- L_j*T`, `RR <- W_j`.
-    pub(super) fn read_weight(&mut self, tap_count: usize, datapath: &mut FixedDatapath<'_>) {
+    /// Writing clock of the dot product of L and W: `Y <- Q_y(ACC + P)`, on to `done`.
+    pub(super) fn write_output(
+        &mut self,
+        formats: &TapFormats,
+        done: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        let sum = self.last_sum(datapath);
+        self.output = formats.output(sum).code;
+        self.state = done;
+    }
+
+    /// Reading clock of a weight behind the ring of L: `P <- L_j*T`, `RR <- W_j`, on to `writing`.
+    pub(super) fn read_weight(
+        &mut self,
+        tap_count: usize,
+        writing: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
         let l_j = datapath.read_a(self.slot(self.j, tap_count));
         self.read_latch = datapath.read_b(self.j);
         self.product = datapath.multiply(l_j, self.intermediate);
+        self.state = writing;
     }
 
-    /// Writing clock of a weight: `W_j <- Q_W(RR + P)`, on to the next tap; whether it was the last one.
+    /// Writing clock of a weight: `W_j <- Q_W(RR + P)`.
+    ///
+    /// * `again`: state before the next tap. * `done`: state after the last one.
     pub(super) fn correct_weight(
         &mut self,
         formats: &LmsFormats,
         tap_count: usize,
+        (again, done): (S, S),
         datapath: &mut FixedDatapath<'_>,
-    ) -> bool {
+    ) {
         datapath.count_sum();
         let weight = formats.weight(self.read_latch, self.product).code;
-        self.write_weight(weight, tap_count, datapath)
+        datapath.write_b(self.j, weight);
+        self.state = again;
+        self.next_tap(tap_count, done);
     }
 
-    /// One clock of clearing: a word of the ring of L and `W_j <- weight`; whether it was the last one.
+    /// One clock of clearing: a word of the ring of L and `W_j <- weight`; idle after the last tap.
     pub(super) fn clear_tap(
         &mut self,
         weight: i64,
         tap_count: usize,
         datapath: &mut FixedDatapath<'_>,
-    ) -> bool {
+    ) {
         datapath.write_a(self.j, 0);
-        self.write_weight(weight, tap_count, datapath)
+        datapath.write_b(self.j, weight);
+        self.next_tap(tap_count, S::IDLE);
     }
 
-    /// `W_j <- weight`, on to the next tap; whether it was the last one.
-    fn write_weight(
-        &mut self,
-        weight: i64,
-        tap_count: usize,
-        datapath: &mut FixedDatapath<'_>,
-    ) -> bool {
-        datapath.write_b(self.j, weight);
+    /// On to the next tap, after the last one to `done`.
+    fn next_tap(&mut self, tap_count: usize, done: S) {
         self.j = (self.j + 1) % tap_count;
-        self.j == 0
+        if self.j == 0 {
+            self.state = done;
+        }
     }
 }

@@ -83,30 +83,23 @@ impl FixedMachine for FixedLmsMachine {
                 self.registers.accumulate_taps(0, 0, taps, done, datapath);
             }
             LmsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.of_taps().output(sum).code;
-                self.registers.state = LmsState::Err;
+                let formats = self.config.formats.of_taps();
+                self.registers
+                    .write_output(&formats, LmsState::Err, datapath);
             }
             LmsState::Err => self.form_error(datapath),
             LmsState::Gain => self.scale_error(datapath),
             LmsState::LmwReading => {
-                self.registers.read_weight(taps, datapath);
-                self.registers.state = LmsState::LmwWriting;
+                self.registers
+                    .read_weight(taps, LmsState::LmwWriting, datapath);
             }
             LmsState::LmwWriting => {
                 let formats = &self.config.formats;
                 // After the last weight the next sample is loaded at once.
-                self.registers.state = if self.registers.correct_weight(formats, taps, datapath) {
-                    Self::after_sample(next_waits)
-                } else {
-                    LmsState::LmwReading
-                };
+                let then = (LmsState::LmwReading, Self::after_sample(next_waits));
+                self.registers.correct_weight(formats, taps, then, datapath);
             }
-            LmsState::Clearing => {
-                if self.registers.clear_tap(0, taps, datapath) {
-                    self.registers.state = LmsState::Idle;
-                }
-            }
+            LmsState::Clearing => self.registers.clear_tap(0, taps, datapath),
         }
     }
 }

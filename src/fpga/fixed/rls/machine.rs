@@ -149,9 +149,9 @@ impl FixedMachine for FixedRlsMachine {
             FixedRlsState::RfrWriting => self.correct_write(datapath),
             FixedRlsState::RfrMirroring => self.correct_mirror(datapath),
             FixedRlsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.of_taps().output(sum).code;
-                self.registers.state = FixedRlsState::RfwReading;
+                let formats = self.config.formats.of_taps();
+                let done = FixedRlsState::RfwReading;
+                self.registers.write_output(&formats, done, datapath);
             }
             FixedRlsState::RfwReading => self.weight_read(datapath),
             FixedRlsState::RfwWriting => self.weight_write(next_waits, datapath),

@@ -91,30 +91,25 @@ impl FixedMachine for FixedSignLmsMachine {
             }
             SignLmsState::OutReading => self.accumulate_output(datapath),
             SignLmsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.of_taps().output(sum).code;
-                self.registers.state = SignLmsState::Err;
+                let formats = self.config.formats.of_taps();
+                self.registers
+                    .write_output(&formats, SignLmsState::Err, datapath);
             }
             SignLmsState::Err => self.form_error(datapath),
             SignLmsState::Gain => self.scale_error(datapath),
             SignLmsState::LmwReading => {
-                self.registers.read_weight(taps, datapath);
-                self.registers.state = SignLmsState::LmwWriting;
+                self.registers
+                    .read_weight(taps, SignLmsState::LmwWriting, datapath);
             }
             SignLmsState::LmwWriting => {
                 let formats = &self.config.formats;
                 // After the last weight the next sample is loaded at once.
-                self.registers.state = if self.registers.correct_weight(formats, taps, datapath) {
-                    Self::after_sample(next_waits)
-                } else {
-                    SignLmsState::LmwReading
-                };
+                let then = (SignLmsState::LmwReading, Self::after_sample(next_waits));
+                self.registers.correct_weight(formats, taps, then, datapath);
             }
             SignLmsState::Clearing => {
                 let weight = self.config.initial_weight;
-                if self.registers.clear_tap(weight, taps, datapath) {
-                    self.registers.state = SignLmsState::Idle;
-                }
+                self.registers.clear_tap(weight, taps, datapath);
             }
         }
     }
