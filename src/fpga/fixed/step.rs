@@ -2,57 +2,32 @@
 //! value becomes.
 
 use super::exact::{CONSTANT_BITS_MAX, Exact, constant, scaled};
-use super::format::{Format, Stored};
-use super::signal::{Overflows, Signal, SignalName};
-use super::taps::TapFormats;
+use super::format::Stored;
+use super::signal::{Overflows, SignalName};
+use super::taps::signal_formats;
 use crate::fpga::error::FpgaError;
 
-/// Formats of the signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LmsFormats {
-    /// Regressor words x and the ring of L.
-    pub input: Format,
-    /// Desired word d.
-    pub desired: Format,
-    /// Step of the taps `t = k e`, or k with the sign of e.
-    pub intermediate: Format,
-    /// Denominator `eps + L'L`.
-    pub denominator: Format,
-    /// Gain k: the step, over the denominator if there is one.
-    pub gain: Format,
-    /// Weights W.
-    pub weight: Format,
-    /// Output y and error e.
-    pub output: Format,
+signal_formats! {
+    /// Formats of the signals.
+    pub struct LmsFormats {
+        /// Regressor words x and the ring of L.
+        input: X;
+        /// Desired word d.
+        desired: D;
+        /// Step of the taps `t = k e`, or k with the sign of e.
+        intermediate: T;
+        /// Denominator `eps + L'L`.
+        denominator: Den;
+        /// Gain k: the step, over the denominator if there is one.
+        gain: K;
+        /// Weights W.
+        weight: W;
+        /// Output y and error e.
+        output: Y;
+    }
 }
 
 impl LmsFormats {
-    /// All of them by name.
-    #[must_use]
-    pub fn signals(&self) -> [Signal; 7] {
-        [
-            (SignalName::X, self.input),
-            (SignalName::D, self.desired),
-            (SignalName::T, self.intermediate),
-            (SignalName::Den, self.denominator),
-            (SignalName::K, self.gain),
-            (SignalName::W, self.weight),
-            (SignalName::Y, self.output),
-        ]
-        .map(|(name, format)| Signal { name, format })
-    }
-
-    /// Those that every filter of taps has.
-    #[must_use]
-    pub fn of_taps(&self) -> TapFormats {
-        TapFormats {
-            input: self.input,
-            desired: self.desired,
-            weight: self.weight,
-            output: self.output,
-        }
-    }
-
     /// Refuses formats that the models do not hold.
     ///
     /// * `by_sign`: whether t is k with a sign.

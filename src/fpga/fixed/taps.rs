@@ -1,4 +1,4 @@
-//! Words that every filter of taps has: what enters it, its weights, what leaves it.
+//! Formats of a filter's signals: how a kind declares them, and those that every filter of taps has.
 
 use super::format::{Format, Stored};
 
@@ -29,3 +29,42 @@ impl TapFormats {
         self.output.store_sum(values, scales)
     }
 }
+
+/// Declares the formats of a kind of filters: a field for each signal, in the order of their names.
+macro_rules! signal_formats {
+    (
+        $(#[doc = $about:literal])+
+        pub struct $formats:ident {
+            $($(#[doc = $doc:literal])+ $field:ident: $name:ident;)+
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $formats {
+            $($(#[doc = $doc])+ pub $field: $crate::fpga::fixed::Format,)+
+        }
+
+        impl $formats {
+            /// All of them by name.
+            #[must_use]
+            pub fn signals(&self) -> [$crate::fpga::fixed::Signal; [$($crate::fpga::fixed::SignalName::$name),+].len()] {
+                [$($crate::fpga::fixed::Signal {
+                    name: $crate::fpga::fixed::SignalName::$name,
+                    format: self.$field,
+                }),+]
+            }
+
+            /// Those that every filter of taps has.
+            #[must_use]
+            pub fn of_taps(&self) -> $crate::fpga::fixed::TapFormats {
+                $crate::fpga::fixed::TapFormats {
+                    input: self.input,
+                    desired: self.desired,
+                    weight: self.weight,
+                    output: self.output,
+                }
+            }
+        }
+    };
+}
+pub(super) use signal_formats;
