@@ -129,7 +129,7 @@ fn fixed_lms_reset_in_any_clock_leaves_nothing_of_the_past() {
 /// Largest and root-mean-square distance of the fixed-point words from those of a filter in binary64.
 fn distance(config: &FixedConfig, mut float: impl FnMut(Pair<f64>) -> f64) -> (f64, f64) {
     let pipeline = config.as_pipeline();
-    let (input, desired) = (pipeline.input(), pipeline.desired());
+    let formats = pipeline.tap_formats();
     let mut engine = pipeline.engine();
     let (mut worst, mut squares): (f64, f64) = (0.0, 0.0);
     let pairs = pairs(config, 4000);
@@ -138,12 +138,12 @@ fn distance(config: &FixedConfig, mut float: impl FnMut(Pair<f64>) -> f64) -> (f
         desired: d,
     } in &pairs
     {
-        let pair = Pair::from_f64(input.value(*x), desired.value(*d));
+        let pair = Pair::from_f64(formats.input.value(*x), formats.desired.value(*d));
         let word = engine.process(CodePair {
             input: *x,
             desired: *d,
         });
-        let off = (pipeline.output().value(word) - float(pair)).abs();
+        let off = (formats.output.value(word) - float(pair)).abs();
         worst = worst.max(off);
         squares += off * off;
     }

@@ -36,7 +36,7 @@ pub(crate) fn export(config: &FixedConfig, count: u32, trace_samples: usize) -> 
         })
         .collect();
     let pipeline = config.as_pipeline();
-    let format = pipeline.desired();
+    let format = pipeline.tap_formats().desired;
     // Words of both ends; the wide words of another test are to stay within theirs.
     if format.width() < 48 && samples.len() > 9 {
         samples[9] = -100.0;

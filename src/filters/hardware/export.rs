@@ -131,7 +131,7 @@ fn export_fixed(
         });
     }
     let config = settings.config()?;
-    let format = config.as_pipeline().desired();
+    let format = config.as_pipeline().tap_formats().desired;
     let full_scale = settings.full_scale_deg_per_h;
     let words = stimulus.words.iter();
     let export = FixedExport {

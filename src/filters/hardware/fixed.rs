@@ -12,7 +12,7 @@ use crate::filters::words::FixedWords;
 use crate::fpga::FpgaError;
 use crate::fpga::engine::InverseCorrelation;
 use crate::fpga::fixed::{
-    FixedConfig, FixedCoreSettings, FixedEngine, FixedFrontEnd, Format, SignalName,
+    FixedConfig, FixedCoreSettings, FixedEngine, FixedFrontEnd, Format, SignalName, TapFormats,
     fixed_board_usage, fixed_usage,
 };
 use crate::fpga::health::{Warning, wind_up_warning};
@@ -106,15 +106,14 @@ impl FixedSettings {
     ) -> Result<Box<dyn HardwareFilter>, FpgaError> {
         let config = self.config()?;
         let pipeline = config.as_pipeline();
+        let formats = pipeline.tap_formats();
         let twin = &self.twin;
         let (desired, lag) = (twin.desired, twin.input_lag_samples);
         Ok(Box::new(FixedPipelineFilter {
             full_scale_deg_per_h: self.full_scale_deg_per_h,
             has_signal: SignalName::ALL.map(|name| self.format_of(name).is_some()),
-            desired: pipeline.desired(),
-            weight: pipeline.weight(),
-            output: pipeline.output(),
-            front_end: FixedFrontEnd::new(pipeline.input(), pipeline.desired(), desired, lag),
+            formats,
+            front_end: FixedFrontEnd::new(formats, desired, lag),
             weights: vec![0.0; pipeline.tap_count()],
             engine: pipeline.engine(),
             register: Register::new(twin.output_register),
@@ -208,10 +207,7 @@ struct FixedPipelineFilter {
     full_scale_deg_per_h: f64,
     /// Whether the pipeline has each signal, in the order of their names.
     has_signal: [bool; SignalName::ALL.len()],
-    /// Formats of d, W and y.
-    desired: Format,
-    weight: Format,
-    output: Format,
+    formats: TapFormats,
     front_end: FixedFrontEnd,
     engine: Box<dyn FixedEngine + Send>,
     weights: Vec<f64>,
@@ -228,15 +224,15 @@ impl FixedPipelineFilter {
     fn advance(&mut self, input: f64, sample: u64) -> Result<Output, Fault> {
         let full_scale = self.full_scale_deg_per_h;
         let weight_sum = self.weights.iter().sum();
-        let stored = self.desired.of(input / full_scale);
+        let stored = self.formats.desired.of(input / full_scale);
         self.desired_overflows += u64::from(stored.overflowed);
         let pair = self.front_end.pair(stored.code);
         let code = self.engine.process(pair);
         for (held, word) in self.weights.iter_mut().zip(self.engine.weights()) {
-            *held = self.weight.value(*word);
+            *held = self.formats.weight.value(*word);
         }
         let result = Output {
-            value_deg_per_h: self.output.value(code) * full_scale,
+            value_deg_per_h: self.formats.output.value(code) * full_scale,
             weight_sum,
         };
         let output = self.register.clock(result);

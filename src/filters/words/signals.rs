@@ -177,9 +177,32 @@ macro_rules! signal_tables {
 }
 pub(super) use signal_tables;
 
-/// Lists the signals of a table of words, and whether it has a floor of R.
-macro_rules! signals {
-    ($words:ident: $($name:ident)+ $(, $floor:ident)?) => {
+/// Declares the words of a kind: keys of all signals, a floor of R if it has one, and its signals with their tables.
+macro_rules! fixed_words {
+    (
+        $(#[doc = $about:literal])+
+        pub struct $words:ident {
+            $($(#[doc = $floor_doc:literal])+ $floor:ident: u32 = $none:literal, in $low:literal..=$high:literal;)?
+            $($name:ident: $table:ident;)+
+        }
+    ) => {
+        $crate::declare::table! {
+            $(#[doc = $about])+
+            pub struct $words {
+                /// Rate that the value 1 of x, d and y stands for. Source of the default: twice the swing of the
+                /// paper.
+                full_scale_deg_per_h: f64 = 7200.0, in 1e-3..=1e9, "deg/h";
+                /// Bits of a word, of every signal that does not say otherwise.
+                word_bits: u32 = 32, in 2..=48;
+                /// How values between two words are rounded, in every signal that does not say otherwise.
+                rounding: Rounding = "half-up";
+                /// What becomes of values beyond the ends, in every signal that does not say otherwise.
+                overflow: Overflow = "saturate";
+                $($(#[doc = $floor_doc])+ $floor: u32 = $none, in $low..=$high;)?
+                $($name: $table;)+
+            }
+        }
+
         impl $words {
             /// The words, what the table of a signal leaves out taken from that of all.
             #[must_use]
@@ -205,4 +228,4 @@ macro_rules! signals {
         }
     };
 }
-pub(super) use signals;
+pub(super) use fixed_words;

@@ -56,9 +56,8 @@ impl FixedExport {
     #[must_use]
     pub fn pairs(&self) -> Vec<CodePair> {
         let pipeline = self.config.as_pipeline();
-        let (input, desired) = (pipeline.input(), pipeline.desired());
-        let mut front_end =
-            FixedFrontEnd::new(input, desired, self.desired, self.input_lag_samples);
+        let formats = pipeline.tap_formats();
+        let mut front_end = FixedFrontEnd::new(formats, self.desired, self.input_lag_samples);
         let samples = self.samples.iter();
         samples.map(|sample| front_end.pair(*sample)).collect()
     }

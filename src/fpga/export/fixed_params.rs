@@ -31,10 +31,11 @@ pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
     define("CLEAR", &(kind.states.len() - 1).to_string());
     define("CLEAR_CLOCKS", &fixed_clearing_clocks(pipeline).to_string());
     define("DIVISIONS", &pipeline.divisions().to_string());
+    let formats = pipeline.tap_formats();
     for (name, format) in [
-        ("WX", pipeline.input()),
-        ("WD", pipeline.desired()),
-        ("WY", pipeline.output()),
+        ("WX", formats.input),
+        ("WD", formats.desired),
+        ("WY", formats.output),
     ] {
         define(name, &format.width().to_string());
     }
@@ -55,9 +56,8 @@ pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
     define("TOP_NEXT", &u8::from(is_late).to_string());
     define("TOP_FRONT", &board.front_end_clocks.to_string());
     define("TOP_PERIOD", &board.clocks_per_sample.to_string());
-    let (sample, result) = (pipeline.desired(), pipeline.output());
-    define("TOP_SAMPLE_BITS", &sample.width().to_string());
-    define("TOP_RESULT_BITS", &result.width().to_string());
+    define("TOP_SAMPLE_BITS", &formats.desired.width().to_string());
+    define("TOP_RESULT_BITS", &formats.output.width().to_string());
     text
 }
 

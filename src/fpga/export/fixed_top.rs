@@ -3,12 +3,18 @@
 use super::fixed::FixedExport;
 use super::fixed_params::{core_parameters, format_parameters};
 use super::top::{TOP_HEAD, output_register};
+use crate::fpga::fixed::TapFormats;
 use crate::vocabulary::DesiredSignal;
 
 /// Verilog of the top level.
 pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
     let pipeline = export.config.as_pipeline();
-    let (input, desired, output) = (pipeline.input(), pipeline.desired(), pipeline.output());
+    let TapFormats {
+        input,
+        desired,
+        output,
+        ..
+    } = pipeline.tap_formats();
     let kind = pipeline.kind().name;
     let sample_bits = desired.width() - 1;
     let result_bits = output.width() - 1;

@@ -13,17 +13,16 @@
 //! Checked by `fixed_point`.
 
 use super::CodePair;
-use super::format::Format;
 use super::pipeline::FixedPipeline;
 use super::sequencer::FixedClocked;
+use super::taps::TapFormats;
 use crate::fpga::board::BoardUsage;
 use crate::vocabulary::DesiredSignal;
 
 /// The hold registers in front of the core.
 #[derive(Clone, Debug)]
 pub struct FixedFrontEnd {
-    input: Format,
-    desired: Format,
+    formats: TapFormats,
     signal: DesiredSignal,
     lag: usize,
     /// Newest first.
@@ -34,12 +33,11 @@ pub struct FixedFrontEnd {
 impl FixedFrontEnd {
     /// A front end just out of reset.
     ///
-    /// * `input`, `desired`: formats of x and d. * `lag`: samples by which x is older than the newest.
+    /// * `formats`: those of the core. * `lag`: samples by which x is older than the newest.
     #[must_use]
-    pub fn new(input: Format, desired: Format, signal: DesiredSignal, lag: usize) -> Self {
+    pub fn new(formats: TapFormats, signal: DesiredSignal, lag: usize) -> Self {
         Self {
-            input,
-            desired,
+            formats,
             signal,
             lag,
             held: vec![0; lag.max(1)],
@@ -55,7 +53,11 @@ impl FixedFrontEnd {
 
     /// The pair of the next sample, a code of d.
     pub fn pair(&mut self, sample: i64) -> CodePair {
-        let format = self.desired;
+        let TapFormats {
+            input,
+            desired: format,
+            ..
+        } = self.formats;
         let old = match self.lag {
             0 => sample,
             lag => self.held[lag - 1],
@@ -71,10 +73,10 @@ impl FixedFrontEnd {
         };
         self.held.rotate_right(1);
         self.held[0] = sample;
-        let input = self.input.store(i128::from(old), format.fraction_bits);
-        self.overflows[0] += u64::from(input.overflowed);
+        let stored = input.store(i128::from(old), format.fraction_bits);
+        self.overflows[0] += u64::from(stored.overflowed);
         CodePair {
-            input: input.code,
+            input: stored.code,
             desired,
         }
     }

@@ -16,18 +16,6 @@ pub(super) fn dot(first: i128, a: &[i64], b: &[i64]) -> i128 {
     sum
 }
 
-/// The ring of L as RAMA holds it.
-///
-/// * `line`: regressors, newest first. * `head`: slot of the newest.
-pub(super) fn ring(line: &[i64], head: usize) -> Vec<i64> {
-    let count = line.len();
-    let mut words = vec![0; count];
-    for (j, word) in line.iter().enumerate() {
-        words[(head + count - j) % count] = *word;
-    }
-    words
-}
-
 /// `value * 2^fraction_bits` for a value from 0 below 2^52, nearest, ties to even.
 pub(super) fn scaled(value: f64, fraction_bits: u32) -> i128 {
     let bits = value.to_bits();

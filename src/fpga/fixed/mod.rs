@@ -12,7 +12,8 @@
 //! As of the floating-point pipelines there is a machine with its clocks and an engine without, which share
 //! no control; what an exact value becomes stands in the constants of a pipeline, which both have.
 //!
-//! * [`format`](Format): words and their rounding; [`Signal`]: the signals, and their words beyond the ends.
+//! * [`format`](Format): words and their rounding; [`Signal`]: the signals, and their words beyond the ends;
+//!   [`TapFormats`]: those of every filter.
 //! * [`FixedSequencer`], [`FixedDatapath`], [`FixedRegisters`]: what clocks a machine, and what it clocks.
 //! * [`rls`], [`lms`], [`sign_lms`]: states and steps of a pipeline, its engine.
 //! * [`FixedPipeline`]: what a pipeline declares of itself; [`FixedConfig`]: one of any kind.
@@ -25,6 +26,7 @@ mod datapath;
 mod exact;
 mod format;
 mod kinds;
+mod line;
 pub mod lms;
 mod pipeline;
 mod registers;
@@ -33,6 +35,7 @@ mod sequencer;
 pub mod sign_lms;
 mod signal;
 mod step;
+mod taps;
 mod usage;
 
 pub use board::{FixedFrontEnd, fixed_board_usage};
@@ -46,6 +49,7 @@ pub use registers::FixedRegisters;
 pub use sequencer::{FixedClock, FixedClocked, FixedMachine, FixedSequencer};
 pub use signal::{Overflows, Signal, SignalName};
 pub use step::LmsFormats;
+pub use taps::TapFormats;
 pub use usage::{fixed_clearing_clocks, fixed_usage};
 
 pub use crate::vocabulary::{Overflow, Rounding};

@@ -7,6 +7,7 @@ use super::CodePair;
 use super::format::Format;
 use super::sequencer::FixedClocked;
 use super::signal::{Overflows, Signal};
+use super::taps::TapFormats;
 
 /// What is the same for all fixed-point pipelines of a kind.
 #[derive(Debug, PartialEq)]
@@ -50,17 +51,8 @@ pub trait FixedPipeline {
     /// Its signals, in the order of their names.
     fn signals(&self) -> Vec<Signal>;
 
-    /// Format of the regressor words x.
-    fn input(&self) -> Format;
-
-    /// Format of the desired words d, in which samples arrive.
-    fn desired(&self) -> Format;
-
-    /// Format of the weights.
-    fn weight(&self) -> Format;
-
-    /// Format of y.
-    fn output(&self) -> Format;
+    /// Formats of x, d, W and y.
+    fn tap_formats(&self) -> TapFormats;
 
     /// Bits of a word of RAMA and of RAMB.
     fn memory_bits(&self) -> [u32; 2];

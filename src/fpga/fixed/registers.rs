@@ -1,6 +1,9 @@
 //! Registers of a fixed-point control machine, and the steps that the machines share.
 
+use super::CodePair;
 use super::datapath::FixedDatapath;
+use super::step::LmsFormats;
+use super::taps::TapFormats;
 use crate::fpga::registers::ControlState;
 
 /// Registers, named as in the RTL. One that a pipeline has not built stays at zero.
@@ -88,10 +91,60 @@ impl<S: ControlState> FixedRegisters<S> {
         (self.head + 1) % tap_count
     }
 
-    /// One clock of a dot product over the taps: `P <- a*b`, `ACC <- first` or `ACC + P`.
+    /// Loading clock: the regressor word enters the ring of L, the desired word its register.
+    pub(super) fn load_pair(
+        &mut self,
+        pair: CodePair,
+        tap_count: usize,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        self.enter_ring(pair.input, tap_count, datapath);
+        self.desired = pair.desired;
+    }
+
+    /// Writing clock of the ring of L: the word takes the slot of the oldest one.
+    pub(super) fn enter_ring(
+        &mut self,
+        word: i64,
+        tap_count: usize,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        self.head = self.next_slot(tap_count);
+        datapath.write_a(self.head, word);
+    }
+
+    /// One clock of a dot product of L with the words of RAMB: `P <- L_j*B_j`, `ACC <- first` or `ACC + P`.
+    ///
+    /// * `start`: address of `B_0`. * `first`: what the sum starts at. * `done`: state after the last tap.
+    pub(super) fn accumulate_taps(
+        &mut self,
+        start: usize,
+        first: i128,
+        tap_count: usize,
+        done: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        let l_j = datapath.read_a(self.slot(self.j, tap_count));
+        let b_j = datapath.read_b(start + self.j);
+        self.accumulate((l_j, b_j), first, tap_count, done, datapath);
+    }
+
+    /// One clock of the sum of squares `L'L`, both factors from one read of RAMA.
     ///
     /// * `first`: what the sum starts at. * `done`: state after the last tap.
-    pub(super) fn accumulate(
+    pub(super) fn accumulate_squares(
+        &mut self,
+        first: i128,
+        tap_count: usize,
+        done: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        let l_j = datapath.read_a(self.slot(self.j, tap_count));
+        self.accumulate((l_j, l_j), first, tap_count, done, datapath);
+    }
+
+    /// One clock of a dot product over the taps: `P <- a*b`, `ACC <- first` or `ACC + P`.
+    fn accumulate(
         &mut self,
         (a, b): (i64, i64),
         first: i128,
@@ -105,10 +158,7 @@ impl<S: ControlState> FixedRegisters<S> {
             self.last_sum(datapath)
         };
         self.product = datapath.multiply(a, b);
-        self.j = (self.j + 1) % tap_count;
-        if self.j == 0 {
-            self.state = done;
-        }
+        self.next_tap(tap_count, done);
     }
 
     /// The last sum of a dot product, in its writing clock: `ACC + P`.
@@ -116,22 +166,65 @@ impl<S: ControlState> FixedRegisters<S> {
         datapath.add(self.accumulator, self.product)
     }
 
-    /// Reading clock of a weight behind the ring of L: `P <- L_j*T`, `RR <- W_j`.
-    pub(super) fn read_weight(&mut self, tap_count: usize, datapath: &mut FixedDatapath<'_>) {
+    /// Writing clock of the dot product of L and W: `Y <- Q_y(ACC + P)`, on to `done`.
+    pub(super) fn write_output(
+        &mut self,
+        formats: &TapFormats,
+        done: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        let sum = self.last_sum(datapath);
+        self.output = formats.output(sum).code;
+        self.state = done;
+    }
+
+    /// Reading clock of a weight behind the ring of L: `P <- L_j*T`, `RR <- W_j`, on to `writing`.
+    pub(super) fn read_weight(
+        &mut self,
+        tap_count: usize,
+        writing: S,
+        datapath: &mut FixedDatapath<'_>,
+    ) {
         let l_j = datapath.read_a(self.slot(self.j, tap_count));
         self.read_latch = datapath.read_b(self.j);
         self.product = datapath.multiply(l_j, self.intermediate);
+        self.state = writing;
     }
 
-    /// Writing clock of a weight: `W_j <- weight`, on to the next tap; whether it was the last one.
-    pub(super) fn write_weight(
+    /// Writing clock of a weight: `W_j <- Q_W(RR + P)`.
+    ///
+    /// * `again`: state before the next tap. * `done`: state after the last one.
+    pub(super) fn correct_weight(
+        &mut self,
+        formats: &LmsFormats,
+        tap_count: usize,
+        (again, done): (S, S),
+        datapath: &mut FixedDatapath<'_>,
+    ) {
+        datapath.count_sum();
+        let weight = formats.weight(self.read_latch, self.product).code;
+        datapath.write_b(self.j, weight);
+        self.state = again;
+        self.next_tap(tap_count, done);
+    }
+
+    /// One clock of clearing: a word of the ring of L and `W_j <- weight`; idle after the last tap.
+    pub(super) fn clear_tap(
         &mut self,
         weight: i64,
         tap_count: usize,
         datapath: &mut FixedDatapath<'_>,
-    ) -> bool {
+    ) {
+        datapath.write_a(self.j, 0);
         datapath.write_b(self.j, weight);
+        self.next_tap(tap_count, S::IDLE);
+    }
+
+    /// On to the next tap, after the last one to `done`.
+    fn next_tap(&mut self, tap_count: usize, done: S) {
         self.j = (self.j + 1) % tap_count;
-        self.j == 0
+        if self.j == 0 {
+            self.state = done;
+        }
     }
 }

@@ -2,45 +2,32 @@
 //! value becomes.
 
 use super::exact::{CONSTANT_BITS_MAX, Exact, constant, scaled};
-use super::format::{Format, Stored};
-use super::signal::{Signal, SignalName};
+use super::format::Stored;
+use super::signal::{Overflows, SignalName};
+use super::taps::signal_formats;
 use crate::fpga::error::FpgaError;
 
-/// Formats of the signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LmsFormats {
-    /// Regressor words x and the ring of L.
-    pub input: Format,
-    /// Desired word d.
-    pub desired: Format,
-    /// Step of the taps `t = k e`, or k with the sign of e.
-    pub intermediate: Format,
-    /// Denominator `eps + L'L`.
-    pub denominator: Format,
-    /// Gain k: the step, over the denominator if there is one.
-    pub gain: Format,
-    /// Weights W.
-    pub weight: Format,
-    /// Output y and error e.
-    pub output: Format,
+signal_formats! {
+    /// Formats of the signals.
+    pub struct LmsFormats {
+        /// Regressor words x and the ring of L.
+        input: X;
+        /// Desired word d.
+        desired: D;
+        /// Step of the taps `t = k e`, or k with the sign of e.
+        intermediate: T;
+        /// Denominator `eps + L'L`.
+        denominator: Den;
+        /// Gain k: the step, over the denominator if there is one.
+        gain: K;
+        /// Weights W.
+        weight: W;
+        /// Output y and error e.
+        output: Y;
+    }
 }
 
 impl LmsFormats {
-    /// All of them by name.
-    #[must_use]
-    pub fn signals(&self) -> [Signal; 7] {
-        [
-            (SignalName::X, self.input),
-            (SignalName::D, self.desired),
-            (SignalName::T, self.intermediate),
-            (SignalName::Den, self.denominator),
-            (SignalName::K, self.gain),
-            (SignalName::W, self.weight),
-            (SignalName::Y, self.output),
-        ]
-        .map(|(name, format)| Signal { name, format })
-    }
-
     /// Refuses formats that the models do not hold.
     ///
     /// * `by_sign`: whether t is k with a sign.
@@ -60,19 +47,6 @@ impl LmsFormats {
         step.check("exact t", t)?;
         let weight = Exact::word(self.weight).plus(Exact::product(x, t));
         weight.check("exact W", self.weight)
-    }
-
-    /// `Q_y` of a sum of products of L and W.
-    pub(super) fn output(&self, sum: i128) -> Stored {
-        let scale = self.input.fraction_bits + self.weight.fraction_bits;
-        self.output.store(sum, scale)
-    }
-
-    /// `Q_y(d - y)`.
-    pub(super) fn error(&self, desired: i64, output: i64) -> Stored {
-        let scales = [self.desired.fraction_bits, self.output.fraction_bits];
-        let values = [i128::from(desired), -i128::from(output)];
-        self.output.store_sum(values, scales)
     }
 
     /// `Q_t(e*k)`.
@@ -97,6 +71,22 @@ impl LmsFormats {
         let product_scale = self.input.fraction_bits + self.intermediate.fraction_bits;
         let scales = [self.weight.fraction_bits, product_scale];
         self.weight.store_sum([i128::from(weight), product], scales)
+    }
+
+    /// Corrects every weight by the step t of the taps; words beyond the ends are counted.
+    ///
+    /// * `line`: regressors, newest first.
+    pub(super) fn correct(
+        &self,
+        weights: &mut [i64],
+        line: &[i64],
+        step: i64,
+        overflows: &mut Overflows,
+    ) {
+        for (w_j, l_j) in weights.iter_mut().zip(line) {
+            let product = i128::from(*l_j) * i128::from(step);
+            *w_j = overflows.counted(SignalName::W, self.weight(*w_j, product));
+        }
     }
 }
 

@@ -15,6 +15,9 @@ pub(crate) const TOO_FEW_BLOCKS: &str = "the record is too short for an interval
 /// Quantile 0.975 of the standard normal distribution.
 pub(crate) const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
 
+/// Standard deviation of a Gaussian variable over the median of its size.
+pub(crate) const PER_MEDIAN: f64 = 1.482_602_218_505_602;
+
 /// Tail probability on each side of an interval.
 const TAIL: f64 = 0.025;
 
@@ -138,6 +141,22 @@ pub(crate) fn mean_of_present(values: &[f64]) -> f64 {
         return f64::NAN;
     }
     sum / count as f64
+}
+
+/// Median of some values, which it sorts; 0 of none.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    let count = values.len();
+    if count == 0 {
+        return 0.0;
+    }
+    let middle = count / 2;
+    let (below, upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    let upper = *upper;
+    if count % 2 == 1 {
+        return upper;
+    }
+    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    0.5 * (lower + upper)
 }
 
 /// Unbiased sample variance; 0 for fewer than two values.

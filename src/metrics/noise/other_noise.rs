@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::interval::{PER_MEDIAN, median, round_to_count};
 use crate::random::Streams;
 
 /// Samples of a piece: some thirty times those over which the words of a gyro correlate.
@@ -38,31 +38,15 @@ pub fn noise_beside_steps(words: &[f64], motion: &[f64]) -> Vec<f64> {
     let pairs = words.iter().zip(motion);
     let mut noise: Vec<f64> = pairs.map(|(word, motion)| word - motion).collect();
     let mut sizes: Vec<f64> = noise.iter().map(|value| value.abs()).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return noise;
-    }
-    // The median, which few steps do not move; two thirds of the standard deviation.
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    let least = STEP * 1.5 * *median;
-    let steps = motion
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs() > least);
-    let mut index = 0;
-    let steps: Vec<bool> = std::iter::once(false).chain(steps).collect();
-    while let Some(step) = steps[index..].iter().position(|is_step| *is_step) {
-        let start = (index + step).saturating_sub(STEP_REACH);
-        let mut end = index + step;
-        while let Some(next) = steps[end + 1..]
-            .iter()
-            .take(2 * STEP_REACH)
-            .position(|it| *it)
-        {
-            end += 1 + next;
-        }
-        index = (end + STEP_REACH + 1).min(noise.len());
-        for place in start..index {
-            let behind = 2 * index - 1 - place;
+    // The median, which few steps do not move.
+    let least = STEP * PER_MEDIAN * median(&mut sizes);
+    let is_step = |at: &usize| (motion[*at] - motion[at - 1]).abs() > least;
+    let steps: Vec<usize> = (1..noise.len()).filter(is_step).collect();
+    for near in steps.chunk_by(|step, next| next - step <= 2 * STEP_REACH) {
+        let start = near[0].saturating_sub(STEP_REACH);
+        let end = (near[near.len() - 1] + STEP_REACH + 1).min(noise.len());
+        for place in start..end {
+            let behind = 2 * end - 1 - place;
             let before = (2 * start).checked_sub(place + 1);
             let from = noise.get(behind).or(before.and_then(|at| noise.get(at)));
             noise[place] = from.copied().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::sides::median;
+use crate::metrics::estimate::interval::median;
 
 /// Fewest distinct values of words whose scatter says what is far out.
 pub(crate) const DISTINCT_MIN: usize = 8;

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::coarse::{DISTINCT_MIN, are_pulses, distinct_values, smallest_change};
-use super::sides::{SIDE, Sides, median};
+use super::sides::{SIDE, Sides};
+use crate::metrics::estimate::interval::{PER_MEDIAN, median};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs};
 use crate::wording::{counted, plain, to_digits};
@@ -37,9 +38,6 @@ const EDGE: f64 = 3.5;
 
 /// Changes whose scatter is measured, at most.
 const CHANGES_MAX: usize = 1 << 17;
-
-/// Standard deviation of a Gaussian variable over the median of its size.
-const PER_MEDIAN: f64 = 1.482_602_218_505_602;
 
 /// Part of the words of a scatter that the median of their sizes is worth.
 const MEDIAN_EFFICIENCY: f64 = 0.37;

@@ -1,5 +1,7 @@
 //! Where a word should lie by what stands on either side of it: robust lines through a few words each.
 
+use crate::metrics::estimate::interval::median;
+
 /// Words on either side that a line is put through, at most and at least.
 pub(crate) const SIDE: usize = 8;
 pub(crate) const SIDE_MIN: usize = 4;
@@ -127,20 +129,4 @@ impl Sides {
             [low.min(it), high.max(it)]
         })
     }
-}
-
-/// Median of some values, which it sorts; 0 of none.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    let count = values.len();
-    if count == 0 {
-        return 0.0;
-    }
-    let middle = count / 2;
-    let (below, upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    let upper = *upper;
-    if count % 2 == 1 {
-        return upper;
-    }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    0.5 * (lower + upper)
 }

@@ -257,12 +257,12 @@ pub(crate) fn measure_scale_factor(
     metrics: &mut ChannelMetrics,
 ) {
     let samples = record.channel_deg_per_h.len();
-    let mut dwells = counted_dwells(record, staircase);
-    let every: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
+    let dwells = counted_dwells(record, staircase);
+    let every = means(&dwells);
     put_response(&every, metrics);
     measure_small_inputs(&every, staircase, metrics);
-    let rest = match static_zero(staircase, &mut dwells) {
-        Ok(rest) => rest,
+    let above = match AboveRest::new(staircase, dwells) {
+        Ok(above) => above,
         Err(reason) => {
             for key in OF_FIT {
                 metrics.miss(key, reason.clone());
@@ -270,19 +270,10 @@ pub(crate) fn measure_scale_factor(
             return;
         }
     };
-    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
-    let ranges = ranges(&dwells, samples);
-    let drift = |one: usize, other: usize| record.drift_covariance(&ranges[one], &ranges[other]);
-    match fit_drifting_scale_factor(&points, rest, &drift) {
+    match fit_drifting_scale_factor(&above.points, above.rest, &above.drift(record)) {
         Ok(fit) => {
-            put_fit(&fit, staircase, points.len(), metrics);
-            put_rates(
-                record.sample_period_s,
-                staircase,
-                (&dwells, rest),
-                &fit,
-                metrics,
-            );
+            put_fit(&fit, staircase, above.points.len(), metrics);
+            put_rates(record.sample_period_s, staircase, &above, &fit, metrics);
         }
         // The truth may hold fewer rates than were told, under a servo that has not settled.
         Err(reason) => {
@@ -296,41 +287,70 @@ pub(crate) fn measure_scale_factor(
 
 /// Scale factor error alone; none where the dwells give no line.
 pub(crate) fn scale_factor_error_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
-    let mut dwells = counted_dwells(record, staircase);
-    let rest = static_zero(staircase, &mut dwells).ok()?;
-    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
-    Some(ratio_to_ppm(slope(&points, rest).ok()? - 1.0))
+    let above = AboveRest::new(staircase, counted_dwells(record, staircase)).ok()?;
+    Some(ratio_to_ppm(slope(&above.points, above.rest).ok()? - 1.0))
 }
 
 /// Standard deviation of the scale factor error over seeds by slow noise alone.
 pub(crate) fn scale_factor_drift_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
-    let mut dwells = counted_dwells(record, staircase);
-    let rest = static_zero(staircase, &mut dwells).ok()?;
-    let points: Vec<RatePoint> = dwells.iter().map(|(_, point)| *point).collect();
-    let ranges = ranges(&dwells, record.channel_deg_per_h.len());
-    let drift = |one: usize, other: usize| record.drift_covariance(&ranges[one], &ranges[other]);
-    Some(ratio_to_ppm(slope_deviation(&points, rest, &drift).ok()?))
+    let above = AboveRest::new(staircase, counted_dwells(record, staircase)).ok()?;
+    let deviation = slope_deviation(&above.points, above.rest, &above.drift(record));
+    Some(ratio_to_ppm(deviation.ok()?))
 }
 
-/// Samples of dwells that count.
-fn ranges(dwells: &[(&Dwell, RatePoint)], samples: usize) -> Vec<Range<usize>> {
-    let ranges = dwells.iter();
-    ranges
-        .filter_map(|(dwell, _)| counted(dwell, samples))
-        .collect()
+/// A dwell of which enough samples have settled.
+struct Counted<'a> {
+    dwell: &'a Dwell,
+    samples: Range<usize>,
+    means: RatePoint,
 }
 
-/// The dwells that count, with their means.
-fn counted_dwells<'a>(record: &Record, staircase: &'a Staircase) -> Vec<(&'a Dwell, RatePoint)> {
-    let samples = record.channel_deg_per_h.len();
-    let point = |dwell| Some((dwell, rate_point(record, counted(dwell, samples)?)));
-    staircase.dwells.iter().filter_map(point).collect()
+/// The dwells that count.
+fn counted_dwells<'a>(record: &Record, staircase: &'a Staircase) -> Vec<Counted<'a>> {
+    let length = record.channel_deg_per_h.len();
+    let settled = |dwell| {
+        let samples = counted(dwell, length)?;
+        Some(Counted {
+            dwell,
+            means: rate_point(record, samples.clone()),
+            samples,
+        })
+    };
+    staircase.dwells.iter().filter_map(settled).collect()
+}
+
+fn means(dwells: &[Counted]) -> Vec<RatePoint> {
+    dwells.iter().map(|counted| counted.means).collect()
+}
+
+/// The dwells that count but for the static zeros, and what is there at rest.
+struct AboveRest<'a> {
+    dwells: Vec<Counted<'a>>,
+    points: Vec<RatePoint>,
+    rest: StaticZero,
+}
+
+impl<'a> AboveRest<'a> {
+    fn new(staircase: &Staircase, mut dwells: Vec<Counted<'a>>) -> Result<Self, Unavailable> {
+        let rest = static_zero(staircase, &mut dwells)?;
+        Ok(Self {
+            points: means(&dwells),
+            dwells,
+            rest,
+        })
+    }
+
+    /// Covariance of the means of two dwells by slow noise.
+    fn drift(&self, record: &Record) -> impl Fn(usize, usize) -> f64 {
+        let samples = |dwell: usize| &self.dwells[dwell].samples;
+        move |one, other| record.drift_covariance(samples(one), samples(other))
+    }
 }
 
 /// Input and output at rest; takes the static zeros out of the dwells.
 fn static_zero(
     staircase: &Staircase,
-    dwells: &mut Vec<(&Dwell, RatePoint)>,
+    dwells: &mut Vec<Counted>,
 ) -> Result<StaticZero, Unavailable> {
     if !staircase.has_static_zeros {
         return Ok(StaticZero {
@@ -347,7 +367,7 @@ fn static_zero(
         )
         .into());
     }
-    let (before, after) = (dwells.remove(0).1, dwells.pop().map(|last| last.1));
+    let (before, after) = (dwells.remove(0).means, dwells.pop().map(|last| last.means));
     let after = after.unwrap_or(before);
     Ok(StaticZero {
         input_deg_per_h: 0.5 * (before.input_deg_per_h + after.input_deg_per_h),
@@ -417,12 +437,12 @@ fn put_fit(
 fn put_rates(
     sample_period_s: f64,
     staircase: &Staircase,
-    (dwells, rest): (&[(&Dwell, RatePoint)], StaticZero),
+    above: &AboveRest,
     fit: &ScaleFactorFit,
     metrics: &mut ChannelMetrics,
 ) {
     let mut rows: Vec<[f64; 12]> = Vec::new();
-    for ((dwell, point), residual) in dwells.iter().zip(&fit.residuals) {
+    for (Counted { dwell, means, .. }, residual) in above.dwells.iter().zip(&fit.residuals) {
         if !residual.is_moved {
             continue;
         }
@@ -439,9 +459,9 @@ fn put_rates(
         let of_reading = ratio_to_ppm(1.0 / residual.reading_deg_per_h.abs());
         let [low, high] = [-half_width, half_width].map(|shift| residual.value_deg_per_h + shift);
         rows.push([
-            point.input_deg_per_h - rest.input_deg_per_h,
-            point.output_deg_per_h,
-            point.output_deg_per_h - rest.output_deg_per_h,
+            means.input_deg_per_h - above.rest.input_deg_per_h,
+            means.output_deg_per_h,
+            means.output_deg_per_h - above.rest.output_deg_per_h,
             measured_s,
             turns,
             f64::from(u8::from(is_whole)),

@@ -2,7 +2,8 @@
 
 use super::config::{FixedLmsConfig, Step};
 use crate::fpga::fixed::CodePair;
-use crate::fpga::fixed::exact::{dot, ring};
+use crate::fpga::fixed::exact::dot;
+use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
 
@@ -10,9 +11,7 @@ use crate::fpga::fixed::signal::SignalName;
 #[derive(Clone, Debug)]
 pub struct FixedLmsEngine {
     config: FixedLmsConfig,
-    head: usize,
-    /// Regressors, newest first.
-    line: Vec<i64>,
+    line: DelayLine,
     weights: Vec<i64>,
     health: FixedHealth,
 }
@@ -23,8 +22,7 @@ impl FixedLmsEngine {
     pub fn new(config: FixedLmsConfig) -> Self {
         Self {
             config,
-            head: config.tap_count - 1,
-            line: vec![0; config.tap_count],
+            line: DelayLine::new(config.tap_count),
             weights: vec![0; config.tap_count],
             health: FixedHealth::default(),
         }
@@ -33,7 +31,7 @@ impl FixedLmsEngine {
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<i64> {
-        ring(&self.line, self.head)
+        self.line.ring()
     }
 
     /// The gain of this sample, and whether its denominator is above zero.
@@ -43,7 +41,7 @@ impl FixedLmsEngine {
             Step::OverEnergy(step) => step,
         };
         let overflows = &mut self.health.overflows;
-        let energy = dot(step.regularisation, &self.line, &self.line);
+        let energy = dot(step.regularisation, self.line.words(), self.line.words());
         let stored = self.config.denominator(energy);
         let denominator = overflows.counted(SignalName::Den, stored);
         let stored = step.gain(&self.config.formats, denominator);
@@ -55,20 +53,16 @@ impl FixedLmsEngine {
 impl FixedEngine for FixedLmsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let formats = self.config.formats;
-        self.head = (self.head + 1) % self.config.tap_count;
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
+        let taps = formats.of_taps();
+        self.line.shift(pair.input);
         let (gain, is_definite) = self.gain();
         let overflows = &mut self.health.overflows;
-        let sum = dot(0, &self.line, &self.weights);
-        let output = overflows.counted(SignalName::Y, formats.output(sum));
-        let error = overflows.counted(SignalName::Y, formats.error(pair.desired, output));
+        let sum = dot(0, self.line.words(), &self.weights);
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         let product = i128::from(error) * i128::from(gain);
         let step = overflows.counted(SignalName::T, formats.step(product));
-        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
-            let product = i128::from(*l_j) * i128::from(step);
-            *w_j = overflows.counted(SignalName::W, formats.weight(*w_j, product));
-        }
+        formats.correct(&mut self.weights, self.line.words(), step, overflows);
         self.health.close(is_definite);
         output
     }

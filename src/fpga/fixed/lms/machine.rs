@@ -53,10 +53,8 @@ impl FixedMachine for FixedLmsMachine {
     }
 
     fn load(&mut self, pair: CodePair, datapath: &mut FixedDatapath<'_>) {
-        let head = self.registers.next_slot(self.config.tap_count);
-        datapath.write_a(head, pair.input);
-        self.registers.head = head;
-        self.registers.desired = pair.desired;
+        let taps = self.config.tap_count;
+        self.registers.load_pair(pair, taps, datapath);
         self.registers.state = if self.config.is_normalised() {
             LmsState::LlReading
         } else {
@@ -69,61 +67,52 @@ impl FixedMachine for FixedLmsMachine {
         match self.registers.state {
             // The sequencer's own: waiting and loading.
             LmsState::Idle | LmsState::LLoading => {}
-            LmsState::LlReading => self.accumulate_energy(datapath),
+            LmsState::LlReading => {
+                let first = self.config.regularisation();
+                let done = LmsState::LlWriting;
+                self.registers
+                    .accumulate_squares(first, taps, done, datapath);
+            }
             LmsState::LlWriting => {
                 let sum = self.registers.last_sum(datapath);
                 self.registers.denominator = self.config.denominator(sum).code;
                 self.registers.state = LmsState::OutReading;
             }
-            LmsState::OutReading => self.accumulate_output(datapath),
+            LmsState::OutReading => {
+                let done = LmsState::OutWriting;
+                self.registers.accumulate_taps(0, 0, taps, done, datapath);
+            }
             LmsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.output(sum).code;
-                self.registers.state = LmsState::Err;
+                let formats = self.config.formats.of_taps();
+                self.registers
+                    .write_output(&formats, LmsState::Err, datapath);
             }
             LmsState::Err => self.form_error(datapath),
             LmsState::Gain => self.scale_error(datapath),
             LmsState::LmwReading => {
-                self.registers.read_weight(taps, datapath);
-                self.registers.state = LmsState::LmwWriting;
+                self.registers
+                    .read_weight(taps, LmsState::LmwWriting, datapath);
             }
-            LmsState::LmwWriting => self.weight_write(next_waits, datapath),
-            LmsState::Clearing => {
-                datapath.write_a(self.registers.j, 0);
-                if self.registers.write_weight(0, taps, datapath) {
-                    self.registers.state = LmsState::Idle;
-                }
+            LmsState::LmwWriting => {
+                let formats = &self.config.formats;
+                // After the last weight the next sample is loaded at once.
+                let then = (LmsState::LmwReading, Self::after_sample(next_waits));
+                self.registers.correct_weight(formats, taps, then, datapath);
             }
+            LmsState::Clearing => self.registers.clear_tap(0, taps, datapath),
         }
     }
 }
 
 impl FixedLmsMachine {
-    /// LL_reading: `L'L`, both factors from one read of RAMA, started at the regularisation.
-    fn accumulate_energy(&mut self, datapath: &mut FixedDatapath<'_>) {
-        let taps = self.config.tap_count;
-        let l_j = datapath.read_a(self.registers.slot(self.registers.j, taps));
-        let first = self.config.regularisation();
-        self.registers
-            .accumulate((l_j, l_j), first, taps, LmsState::LlWriting, datapath);
-    }
-
-    /// Out_reading: `W'L`.
-    fn accumulate_output(&mut self, datapath: &mut FixedDatapath<'_>) {
-        let taps = self.config.tap_count;
-        let l_j = datapath.read_a(self.registers.slot(self.registers.j, taps));
-        let w_j = datapath.read_b(self.registers.j);
-        self.registers
-            .accumulate((l_j, w_j), 0, taps, LmsState::OutWriting, datapath);
-    }
-
     /// ERR: the error, and for NLMS the gain, which the divider forms meanwhile.
     fn form_error(&mut self, datapath: &mut FixedDatapath<'_>) {
         let FixedRegisters {
             desired, output, ..
         } = self.registers;
         datapath.count_sum();
-        self.registers.error = self.config.formats.error(desired, output).code;
+        let taps = self.config.formats.of_taps();
+        self.registers.error = taps.error(desired, output).code;
         if let Step::OverEnergy(step) = self.config.step {
             datapath.count_quotient();
             let denominator = self.registers.denominator;
@@ -141,22 +130,5 @@ impl FixedLmsMachine {
         let product = datapath.multiply(self.registers.error, gain);
         self.registers.intermediate = self.config.formats.step(product).code;
         self.registers.state = LmsState::LmwReading;
-    }
-
-    /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
-    fn weight_write(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
-        let FixedRegisters {
-            read_latch,
-            product,
-            ..
-        } = self.registers;
-        datapath.count_sum();
-        let weight = self.config.formats.weight(read_latch, product).code;
-        let taps = self.config.tap_count;
-        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
-            Self::after_sample(next_waits)
-        } else {
-            LmsState::LmwReading
-        };
     }
 }

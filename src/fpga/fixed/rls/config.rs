@@ -4,44 +4,27 @@ use crate::fpga::check::check_tap_count;
 use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::exact::{Exact, constant, scaled};
 use crate::fpga::fixed::format::{Format, Stored};
-use crate::fpga::fixed::signal::{Signal, SignalName};
+use crate::fpga::fixed::taps::signal_formats;
 
-/// Formats of the signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RlsFormats {
-    /// Regressor words x and the ring of L.
-    pub input: Format,
-    /// Desired word d.
-    pub desired: Format,
-    /// Intermediate `t = R L`.
-    pub intermediate: Format,
-    /// Denominator `alpha + L't`.
-    pub denominator: Format,
-    /// Gain `k = t / den`.
-    pub gain: Format,
-    /// Inverse correlation R.
-    pub inverse: Format,
-    /// Weights W.
-    pub weight: Format,
-    /// Output y and error e.
-    pub output: Format,
-}
-
-impl RlsFormats {
-    /// All of them by name.
-    #[must_use]
-    pub fn signals(&self) -> [Signal; 8] {
-        [
-            (SignalName::X, self.input),
-            (SignalName::D, self.desired),
-            (SignalName::T, self.intermediate),
-            (SignalName::Den, self.denominator),
-            (SignalName::K, self.gain),
-            (SignalName::R, self.inverse),
-            (SignalName::W, self.weight),
-            (SignalName::Y, self.output),
-        ]
-        .map(|(name, format)| Signal { name, format })
+signal_formats! {
+    /// Formats of the signals.
+    pub struct RlsFormats {
+        /// Regressor words x and the ring of L.
+        input: X;
+        /// Desired word d.
+        desired: D;
+        /// Intermediate `t = R L`.
+        intermediate: T;
+        /// Denominator `alpha + L't`.
+        denominator: Den;
+        /// Gain `k = t / den`.
+        gain: K;
+        /// Inverse correlation R.
+        inverse: R;
+        /// Weights W.
+        weight: W;
+        /// Output y and error e.
+        output: Y;
     }
 }
 
@@ -226,21 +209,6 @@ impl FixedRlsConfig {
         let grown = i128::from(corrected.code) * i128::from(factor);
         let scale = f.inverse.fraction_bits + self.inverse_alpha_fraction_bits;
         [corrected, f.inverse.store(grown, scale)]
-    }
-
-    /// `Q_y` of a sum of products of L and W.
-    pub(super) fn output(&self, sum: i128) -> Stored {
-        let f = &self.formats;
-        let scale = f.input.fraction_bits + f.weight.fraction_bits;
-        f.output.store(sum, scale)
-    }
-
-    /// `Q_y(d - y)`.
-    pub(super) fn error(&self, desired: i64, output: i64) -> Stored {
-        let f = &self.formats;
-        let scales = [f.desired.fraction_bits, f.output.fraction_bits];
-        let values = [i128::from(desired), -i128::from(output)];
-        f.output.store_sum(values, scales)
     }
 
     /// `Q_W(W + k*e)`.

@@ -5,10 +5,10 @@ use super::engine::FixedRlsEngine;
 use super::machine::{
     FixedRlsPipeline, FixedRlsState, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
 };
-use crate::fpga::fixed::format::Format;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedKind, FixedParameters, FixedPipeline};
 use crate::fpga::fixed::sequencer::FixedClocked;
 use crate::fpga::fixed::signal::Signal;
+use crate::fpga::fixed::taps::TapFormats;
 use crate::fpga::registers::ControlState as _;
 
 /// Recursive least squares.
@@ -39,20 +39,8 @@ impl FixedPipeline for FixedRlsConfig {
         self.formats.signals().to_vec()
     }
 
-    fn input(&self) -> Format {
-        self.formats.input
-    }
-
-    fn desired(&self) -> Format {
-        self.formats.desired
-    }
-
-    fn weight(&self) -> Format {
-        self.formats.weight
-    }
-
-    fn output(&self) -> Format {
-        self.formats.output
+    fn tap_formats(&self) -> TapFormats {
+        self.formats.of_taps()
     }
 
     fn memory_bits(&self) -> [u32; 2] {

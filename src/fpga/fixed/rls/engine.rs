@@ -2,7 +2,8 @@
 
 use super::config::FixedRlsConfig;
 use crate::fpga::fixed::CodePair;
-use crate::fpga::fixed::exact::{dot, ring};
+use crate::fpga::fixed::exact::dot;
+use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{CodeMatrix, FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
 
@@ -10,9 +11,7 @@ use crate::fpga::fixed::signal::SignalName;
 #[derive(Clone, Debug)]
 pub struct FixedRlsEngine {
     config: FixedRlsConfig,
-    head: usize,
-    /// Regressors, newest first.
-    line: Vec<i64>,
+    line: DelayLine,
     intermediate: Vec<i64>,
     gain: Vec<i64>,
     weights: Vec<i64>,
@@ -32,8 +31,7 @@ impl FixedRlsEngine {
         }
         Self {
             config,
-            head: p - 1,
-            line: vec![0; p],
+            line: DelayLine::new(p),
             intermediate: vec![0; p],
             gain: vec![0; p],
             weights: vec![0; p],
@@ -73,7 +71,7 @@ impl FixedRlsEngine {
     /// The words RAMA holds after the last sample: ring of L, then k.
     #[must_use]
     pub fn rama(&self) -> Vec<i64> {
-        [ring(&self.line, self.head), self.gain.clone()].concat()
+        [self.line.ring(), self.gain.clone()].concat()
     }
 
     /// The words RAMB holds after the last sample: W, t, R.
@@ -88,15 +86,14 @@ impl FixedEngine for FixedRlsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let config = self.config;
         let p = config.tap_count;
-        self.head = (self.head + 1) % p;
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
+        let taps = config.formats.of_taps();
+        self.line.shift(pair.input);
         for i in 0..p {
-            let sum = dot(0, &self.line, &self.inverse[i * p..(i + 1) * p]);
+            let sum = dot(0, self.line.words(), &self.inverse[i * p..(i + 1) * p]);
             let stored = config.intermediate(sum);
             self.intermediate[i] = self.health.overflows.counted(SignalName::T, stored);
         }
-        let sum = dot(config.alpha, &self.line, &self.intermediate);
+        let sum = dot(config.alpha, self.line.words(), &self.intermediate);
         let stored = config.denominator(sum);
         let denominator = self.health.overflows.counted(SignalName::Den, stored);
         for i in 0..p {
@@ -105,9 +102,9 @@ impl FixedEngine for FixedRlsEngine {
         }
         self.correct();
         let overflows = &mut self.health.overflows;
-        let sum = dot(0, &self.line, &self.weights);
-        let output = overflows.counted(SignalName::Y, config.output(sum));
-        let error = overflows.counted(SignalName::Y, config.error(pair.desired, output));
+        let sum = dot(0, self.line.words(), &self.weights);
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         for i in 0..p {
             let product = i128::from(self.gain[i]) * i128::from(error);
             let weight = config.weight(self.weights[i], product);

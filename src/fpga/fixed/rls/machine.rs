@@ -106,10 +106,8 @@ impl FixedMachine for FixedRlsMachine {
     }
 
     fn load(&mut self, pair: CodePair, datapath: &mut FixedDatapath<'_>) {
-        let head = self.registers.next_slot(self.config.tap_count);
-        datapath.write_a(head, pair.input);
-        self.registers.head = head;
-        self.registers.desired = pair.desired;
+        let p = self.config.tap_count;
+        self.registers.load_pair(pair, p, datapath);
         self.registers.state = FixedRlsState::RiLReading;
     }
 
@@ -118,17 +116,16 @@ impl FixedMachine for FixedRlsMachine {
         match self.registers.state {
             FixedRlsState::Idle | FixedRlsState::RiLLoading => {}
             FixedRlsState::RiLReading => {
-                let b = 2 * p + self.registers.i * p + self.registers.j;
-                self.accumulate(b, 0, FixedRlsState::RiLWriting, datapath);
+                let (row, done) = ((2 + self.registers.i) * p, FixedRlsState::RiLWriting);
+                self.registers.accumulate_taps(row, 0, p, done, datapath);
             }
             FixedRlsState::LrlReading => {
-                let b = p + self.registers.j;
-                let alpha = self.config.alpha;
-                self.accumulate(b, alpha, FixedRlsState::LrlWriting, datapath);
+                let (alpha, done) = (self.config.alpha, FixedRlsState::LrlWriting);
+                self.registers.accumulate_taps(p, alpha, p, done, datapath);
             }
             FixedRlsState::OutReading => {
-                let b = self.registers.j;
-                self.accumulate(b, 0, FixedRlsState::OutWriting, datapath);
+                let done = FixedRlsState::OutWriting;
+                self.registers.accumulate_taps(0, 0, p, done, datapath);
             }
             FixedRlsState::RiLWriting => {
                 let sum = self.registers.last_sum(datapath);
@@ -152,9 +149,9 @@ impl FixedMachine for FixedRlsMachine {
             FixedRlsState::RfrWriting => self.correct_write(datapath),
             FixedRlsState::RfrMirroring => self.correct_mirror(datapath),
             FixedRlsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.output(sum).code;
-                self.registers.state = FixedRlsState::RfwReading;
+                let formats = self.config.formats.of_taps();
+                let done = FixedRlsState::RfwReading;
+                self.registers.write_output(&formats, done, datapath);
             }
             FixedRlsState::RfwReading => self.weight_read(datapath),
             FixedRlsState::RfwWriting => self.weight_write(next_waits, datapath),
@@ -164,22 +161,6 @@ impl FixedMachine for FixedRlsMachine {
 }
 
 impl FixedRlsMachine {
-    /// One clock of a dot product of L with the words of RAMB, that of tap j at address `b`.
-    fn accumulate(
-        &mut self,
-        b: usize,
-        first: i128,
-        done: FixedRlsState,
-        datapath: &mut FixedDatapath<'_>,
-    ) {
-        let p = self.config.tap_count;
-        let j = self.registers.j;
-        let l_j = datapath.read_a(self.registers.slot(j, p));
-        let b_j = datapath.read_b(b);
-        self.registers
-            .accumulate((l_j, b_j), first, p, done, datapath);
-    }
-
     /// Counts the row up; on to `again`, or after the last one to `done`.
     fn next_row(&mut self, again: FixedRlsState, done: FixedRlsState) {
         self.registers.i = (self.registers.i + 1) % self.config.tap_count;
@@ -262,7 +243,8 @@ impl FixedRlsMachine {
         } = self.registers;
         if !self.registers.second {
             datapath.count_sum();
-            self.registers.error = self.config.error(desired, output).code;
+            let taps = self.config.formats.of_taps();
+            self.registers.error = taps.error(desired, output).code;
             self.registers.second = true;
             return;
         }

@@ -3,10 +3,10 @@
 use super::config::FixedSignLmsConfig;
 use super::engine::FixedSignLmsEngine;
 use super::machine::FixedSignLmsPipeline;
-use crate::fpga::fixed::format::Format;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedKind, FixedParameters, FixedPipeline};
 use crate::fpga::fixed::sequencer::FixedClocked;
 use crate::fpga::fixed::signal::Signal;
+use crate::fpga::fixed::taps::TapFormats;
 use crate::fpga::registers::ControlState as _;
 use crate::fpga::sign_lms::{SignLmsState, sign_lms_clocks_per_sample, sign_lms_latency_clocks};
 
@@ -44,20 +44,8 @@ impl FixedPipeline for FixedSignLmsConfig {
         self.formats.signals().to_vec()
     }
 
-    fn input(&self) -> Format {
-        self.formats.input
-    }
-
-    fn desired(&self) -> Format {
-        self.formats.desired
-    }
-
-    fn weight(&self) -> Format {
-        self.formats.weight
-    }
-
-    fn output(&self) -> Format {
-        self.formats.output
+    fn tap_formats(&self) -> TapFormats {
+        self.formats.of_taps()
     }
 
     fn memory_bits(&self) -> [u32; 2] {

@@ -2,7 +2,8 @@
 
 use super::config::FixedSignLmsConfig;
 use crate::fpga::fixed::CodePair;
-use crate::fpga::fixed::exact::{dot, ring};
+use crate::fpga::fixed::exact::dot;
+use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
 
@@ -10,9 +11,7 @@ use crate::fpga::fixed::signal::SignalName;
 #[derive(Clone, Debug)]
 pub struct FixedSignLmsEngine {
     config: FixedSignLmsConfig,
-    head: usize,
-    /// Regressors, newest first.
-    line: Vec<i64>,
+    line: DelayLine,
     weights: Vec<i64>,
     held_samples: usize,
     health: FixedHealth,
@@ -24,8 +23,7 @@ impl FixedSignLmsEngine {
     pub fn new(config: FixedSignLmsConfig) -> Self {
         Self {
             config,
-            head: config.tap_count - 1,
-            line: vec![0; config.tap_count],
+            line: DelayLine::new(config.tap_count),
             weights: vec![config.initial_weight; config.tap_count],
             held_samples: 0,
             health: FixedHealth::default(),
@@ -35,7 +33,7 @@ impl FixedSignLmsEngine {
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<i64> {
-        ring(&self.line, self.head)
+        self.line.ring()
     }
 
     fn is_held(&mut self, error: i64) -> bool {
@@ -53,17 +51,16 @@ impl FixedEngine for FixedSignLmsEngine {
     fn process(&mut self, pair: CodePair) -> i64 {
         let config = self.config;
         let formats = config.formats;
-        self.head = (self.head + 1) % config.tap_count;
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
+        let taps = formats.of_taps();
+        self.line.shift(pair.input);
         // The recursion of the hardware is exact, and so the sum itself.
-        let norm = dot(0, &self.line, &self.line);
+        let norm = dot(0, self.line.words(), self.line.words());
         let overflows = &mut self.health.overflows;
         let denominator = overflows.counted(SignalName::Den, config.denominator(norm));
         let gain = overflows.counted(SignalName::K, config.step.gain(&formats, denominator));
-        let sum = dot(0, &self.line, &self.weights);
-        let output = overflows.counted(SignalName::Y, formats.output(sum));
-        let error = overflows.counted(SignalName::Y, formats.error(pair.desired, output));
+        let sum = dot(0, self.line.words(), &self.weights);
+        let output = overflows.counted(SignalName::Y, taps.output(sum));
+        let error = overflows.counted(SignalName::Y, taps.error(pair.desired, output));
         let step = if self.is_held(error) {
             0
         } else {
@@ -71,10 +68,7 @@ impl FixedEngine for FixedSignLmsEngine {
             self.health.overflows.counted(SignalName::T, stored)
         };
         let overflows = &mut self.health.overflows;
-        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
-            let product = i128::from(*l_j) * i128::from(step);
-            *w_j = overflows.counted(SignalName::W, formats.weight(*w_j, product));
-        }
+        formats.correct(&mut self.weights, self.line.words(), step, overflows);
         self.health.close(denominator > 0);
         output
     }

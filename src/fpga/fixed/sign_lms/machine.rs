@@ -81,9 +81,7 @@ impl FixedMachine for FixedSignLmsMachine {
             // The sequencer's own: waiting and loading.
             SignLmsState::Idle | SignLmsState::LReading => {}
             SignLmsState::LWriting => {
-                let head = self.registers.next_slot(taps);
-                datapath.write_a(head, self.input);
-                self.registers.head = head;
+                self.registers.enter_ring(self.input, taps, datapath);
                 self.registers.state = SignLmsState::NrmAdding;
             }
             SignLmsState::NrmAdding => self.norm_add(datapath),
@@ -93,23 +91,25 @@ impl FixedMachine for FixedSignLmsMachine {
             }
             SignLmsState::OutReading => self.accumulate_output(datapath),
             SignLmsState::OutWriting => {
-                let sum = self.registers.last_sum(datapath);
-                self.registers.output = self.config.formats.output(sum).code;
-                self.registers.state = SignLmsState::Err;
+                let formats = self.config.formats.of_taps();
+                self.registers
+                    .write_output(&formats, SignLmsState::Err, datapath);
             }
             SignLmsState::Err => self.form_error(datapath),
             SignLmsState::Gain => self.scale_error(datapath),
             SignLmsState::LmwReading => {
-                self.registers.read_weight(taps, datapath);
-                self.registers.state = SignLmsState::LmwWriting;
+                self.registers
+                    .read_weight(taps, SignLmsState::LmwWriting, datapath);
             }
-            SignLmsState::LmwWriting => self.weight_write(next_waits, datapath),
+            SignLmsState::LmwWriting => {
+                let formats = &self.config.formats;
+                // After the last weight the next sample is loaded at once.
+                let then = (SignLmsState::LmwReading, Self::after_sample(next_waits));
+                self.registers.correct_weight(formats, taps, then, datapath);
+            }
             SignLmsState::Clearing => {
-                datapath.write_a(self.registers.j, 0);
                 let weight = self.config.initial_weight;
-                if self.registers.write_weight(weight, taps, datapath) {
-                    self.registers.state = SignLmsState::Idle;
-                }
+                self.registers.clear_tap(weight, taps, datapath);
             }
         }
     }
@@ -126,15 +126,12 @@ impl FixedSignLmsMachine {
 
     /// Out_reading: `P <- L_j*W_j`; the adder forms the denominator first, then sums.
     fn accumulate_output(&mut self, datapath: &mut FixedDatapath<'_>) {
-        let (taps, j) = (self.config.tap_count, self.registers.j);
-        let l_j = datapath.read_a(self.registers.slot(j, taps));
-        let w_j = datapath.read_b(j);
-        if j == 0 {
+        if self.registers.j == 0 {
             datapath.count_sum();
             self.registers.denominator = self.config.denominator(self.norm).code;
         }
-        self.registers
-            .accumulate((l_j, w_j), 0, taps, SignLmsState::OutWriting, datapath);
+        let (taps, done) = (self.config.tap_count, SignLmsState::OutWriting);
+        self.registers.accumulate_taps(0, 0, taps, done, datapath);
     }
 
     /// ERR: the error, and the gain, which the divider forms meanwhile.
@@ -148,7 +145,7 @@ impl FixedSignLmsMachine {
         let formats = &self.config.formats;
         datapath.count_sum();
         datapath.count_quotient();
-        self.registers.error = formats.error(desired, output).code;
+        self.registers.error = formats.of_taps().error(desired, output).code;
         self.registers.gain = self.config.step.gain(formats, denominator).code;
         self.registers.state = SignLmsState::Gain;
     }
@@ -172,22 +169,5 @@ impl FixedSignLmsMachine {
             self.config.step_of(error, gain).code
         };
         self.registers.state = SignLmsState::LmwReading;
-    }
-
-    /// LMW_writing: the new weight; after the last one the next sample is loaded at once.
-    fn weight_write(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>) {
-        let FixedRegisters {
-            read_latch,
-            product,
-            ..
-        } = self.registers;
-        datapath.count_sum();
-        let weight = self.config.formats.weight(read_latch, product).code;
-        let taps = self.config.tap_count;
-        self.registers.state = if self.registers.write_weight(weight, taps, datapath) {
-            Self::after_sample(next_waits)
-        } else {
-            SignLmsState::LmwReading
-        };
     }
 }
