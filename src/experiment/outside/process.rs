@@ -204,6 +204,37 @@ impl<'a> Program<'a> {
         Ok(weights.filter(|weights| weights.explain(input, output_deg_per_h)))
     }
 
+    /// The outline of the program and its words, as far as they and a few more runs of it show them.
+    fn shown(&self, output: Vec<f64>) -> Result<(FilterShape, FilterWords), Unfinished> {
+        let config = self.config;
+        let warm_up = self.input.length.warm_up;
+        Ok(match self.weights(&output)? {
+            Some(weights) => {
+                let shape = weights.shape(config.output_register.samples());
+                let gain = given_gain(&shape.rule);
+                let mean_weights = match &shape.rule {
+                    WeightRule::Fixed(weights) => Some(weights.clone()),
+                    _ => None,
+                };
+                let words = FilterWords {
+                    dc_gain: gain,
+                    dc_gain_adapted: gain,
+                    mean_weights,
+                    ..FilterWords::alone(output)
+                };
+                (shape, words)
+            }
+            None if self.repeats(&output)? => (
+                hidden(config, NO_WEIGHTS, &output[warm_up..]),
+                adapted(self, output)?,
+            ),
+            None => (
+                hidden(config, NOT_REPEATED, &output[warm_up..]),
+                FilterWords::alone(output),
+            ),
+        })
+    }
+
     /// Gains for constant rates of every size.
     fn rate_gains(&self, output_deg_per_h: &[f64]) -> Result<Vec<RateGain>, Unfinished> {
         let warm_up = self.input.length.warm_up;
@@ -288,31 +319,7 @@ impl OutsideFilter<'_> {
         };
         let trial = self.resolved.scenario.trial.black_box;
         let black_box = black_box::examine(&program, &twins, trial)?;
-        let (shape, words) = match program.weights(&output)? {
-            Some(weights) => {
-                let shape = weights.shape(config.output_register.samples());
-                let gain = given_gain(&shape.rule);
-                let mean_weights = match &shape.rule {
-                    WeightRule::Fixed(weights) => Some(weights.clone()),
-                    _ => None,
-                };
-                let words = FilterWords {
-                    dc_gain: gain,
-                    dc_gain_adapted: gain,
-                    mean_weights,
-                    ..FilterWords::alone(output)
-                };
-                (shape, words)
-            }
-            None if program.repeats(&output)? => (
-                hidden(config, NO_WEIGHTS, &output[input.length.warm_up..]),
-                adapted(&program, output)?,
-            ),
-            None => (
-                hidden(config, NOT_REPEATED, &output[input.length.warm_up..]),
-                FilterWords::alone(output),
-            ),
-        };
+        let (shape, words) = program.shown(output)?;
         Ok(FinishedFilter {
             name: self.name.clone(),
             kind: None,
