@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
+use super::ahead::Ahead;
 use super::error::LogError;
 
 /// Most bytes that are taken from a pipe or a device, which need not end.
@@ -12,6 +13,8 @@ const STREAM_BYTES_MAX: u64 = 1 << 28;
 const STANDARD_INPUT: &str = "-";
 /// Bytes that are read at once: of a text, enough for several threads.
 const BUFFER_BYTES: usize = 1 << 20;
+/// Bytes of a file from which on it is read ahead.
+const AHEAD_MIN: u64 = 1 << 24;
 /// First bytes that are looked at.
 const FIRST: usize = 8;
 /// Most bytes of a text that is read as a whole.
@@ -64,7 +67,10 @@ impl Input {
         let metadata = file.metadata().map_err(failed)?;
         // Files that the system makes up while they are read have no length.
         let length = (metadata.is_file() && metadata.len() > 0).then_some(metadata.len());
-        let mut reader = BufReader::with_capacity(BUFFER_BYTES, file);
+        let mut reader: Box<dyn BufRead + Send> = match length {
+            Some(AHEAD_MIN..) => Box::new(Ahead::of(file, BUFFER_BYTES).map_err(failed)?),
+            _ => Box::new(BufReader::with_capacity(BUFFER_BYTES, file)),
+        };
         let mut first = Vec::new();
         let read = reader.by_ref().take(FIRST as u64).read_to_end(&mut first);
         read.map_err(failed)?;

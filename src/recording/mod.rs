@@ -22,6 +22,7 @@
 //! what is in doubt the option by which it is said. Every command that takes numbers from a file takes
 //! them through this module.
 
+mod ahead;
 mod bounds;
 mod column;
 mod error;
