@@ -12,7 +12,7 @@ const STREAM_BYTES_MAX: u64 = 1 << 28;
 /// Name of what comes on standard input.
 const STANDARD_INPUT: &str = "-";
 /// Bytes that are read at once: of a text, enough for several threads.
-const BUFFER_BYTES: usize = 1 << 20;
+const BUFFER_BYTES: usize = 1 << 19;
 /// Bytes of a file from which on it is read ahead.
 const AHEAD_MIN: u64 = 1 << 24;
 /// First bytes that are looked at.
