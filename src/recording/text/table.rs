@@ -213,6 +213,9 @@ pub(in crate::recording) fn fault(path: &Path, error: TextError) -> LogError {
     }
 }
 
+/// Fewest bytes in which rows of plain numbers are looked for at once.
+const PLAIN_BYTES_MIN: usize = 1 << 9;
+
 /// A file while it is read.
 struct Table {
     layout: Layout,
@@ -230,6 +233,8 @@ struct Table {
     taken: usize,
     /// What stands between plain numbers, if it is a byte of its own.
     plain_separator: Option<u8>,
+    /// Bytes in which rows of plain numbers are looked for at once.
+    plain_bytes: usize,
 }
 
 /// What is wrong with a row.
@@ -274,6 +279,7 @@ impl Table {
         let is_plain = layout.decimal == DecimalSign::Point && layout.wrapped.is_none();
         Self {
             plain_separator: plain_separator.filter(|_| is_plain),
+            plain_bytes: PLAIN_BYTES_MIN,
             columns: Columns {
                 data: data.collect(),
                 time,
@@ -363,7 +369,24 @@ impl Table {
             separator,
         };
         let first = data.first().map_or(0, |column| column.values.len());
-        let (count, length) = rows.append(bytes, most, data, time.as_mut())?;
+        let (mut count, mut length) = (0, 0);
+        while count < most && length < bytes.len() {
+            let rest = &bytes[length..];
+            let part = &rest[..self.plain_bytes.min(rest.len())];
+            let (more, taken) = rows.append(part, most - count, data, time.as_mut())?;
+            count += more;
+            length += taken;
+            // Another line that is no such row is likely to come as soon as this one did: what is prepared for
+            // the rows behind it is lost.
+            if memchr::memchr(b'\n', &part[taken..]).is_some() {
+                self.plain_bytes = (2 * taken).max(PLAIN_BYTES_MIN);
+                break;
+            }
+            if part.len() == rest.len() {
+                break;
+            }
+            self.plain_bytes *= 2;
+        }
         // The lines of the others follow.
         if let Some(lines) = self.columns.lines.as_mut().filter(|_| count > 0) {
             lines.take(first, number)?;
