@@ -210,25 +210,30 @@ impl LaggedProducts {
 }
 
 /// Lags whose products are summed side by side, so that none waits for the addition of another.
-pub(crate) const SIDE_BY_SIDE: usize = 4;
+const SIDE_BY_SIDE: usize = 4;
 
-/// Adds the products of the first `own` deviations with those behind them at every lag.
-fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [usize]) {
+/// Sums of the products of the first `own` deviations with those behind them at each lag, and the numbers of
+/// these products.
+pub(super) fn products_at<'a>(
+    deviations: &'a [f64],
+    own: usize,
+    lags: impl IntoIterator<Item = usize>,
+) -> Vec<(f64, usize)> {
     // The last block of a short record may hold fewer samples than the lag.
     let later = |lag: usize| {
         let later = deviations.get(lag..).unwrap_or_default();
         &later[..own.min(later.len())]
     };
-    let few = sums.chunks_mut(SIDE_BY_SIDE);
-    let few = few.zip(counts.chunks_mut(SIDE_BY_SIDE)).enumerate();
-    for (index, (sums, counts)) in few {
-        let first = index * SIDE_BY_SIDE;
-        let lags: Vec<&[f64]> = (first..first + sums.len()).map(later).collect();
-        let found = products(&deviations[..own], &lags);
-        for ((sum, count), (more, pairs)) in sums.iter_mut().zip(counts).zip(found) {
-            *sum += more;
-            *count += pairs;
-        }
+    let later: Vec<&'a [f64]> = lags.into_iter().map(later).collect();
+    products(&deviations[..own], &later)
+}
+
+/// Adds the products of the first `own` deviations at every lag.
+fn add_products(deviations: &[f64], own: usize, sums: &mut [f64], counts: &mut [usize]) {
+    let found = products_at(deviations, own, 0..sums.len());
+    for ((sum, count), (more, pairs)) in sums.iter_mut().zip(counts).zip(found) {
+        *sum += more;
+        *count += pairs;
     }
 }
 
@@ -343,7 +348,7 @@ pub(crate) fn independent_samples(autocovariance: &[f64], count: usize) -> f64 {
 
 /// Sums of the products of a slice with the beginning of each of several, none longer than it, over all pairs
 /// without a missing value (NaN), and the numbers of these pairs.
-pub(crate) fn products(a: &[f64], others: &[&[f64]]) -> Vec<(f64, usize)> {
+fn products(a: &[f64], others: &[&[f64]]) -> Vec<(f64, usize)> {
     let mut found = Vec::with_capacity(others.len());
     let (whole, rest) = others.as_chunks::<SIDE_BY_SIDE>();
     found.extend(whole.iter().flat_map(|others| products_of(a, *others)));

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::autocovariance::{SIDE_BY_SIDE, products};
+use super::autocovariance::products_at;
 use crate::metrics::allan::pulses::recognition::PulseWords;
 use crate::metrics::estimate::interval;
 use crate::metrics::theory::memory::memory_samples;
@@ -100,13 +100,8 @@ fn lagged_means(deviations: &[f64], lags: &[usize]) -> Vec<f64> {
     let count = deviations.len();
     let starts: Vec<usize> = (0..count).step_by(PIECE).collect();
     let of_pieces = starts.into_par_iter().map(|start| {
-        let end = (start + PIECE).min(count);
-        let later = |lag: &usize| &deviations[(start + lag).min(count)..(end + lag).min(count)];
-        let few = lags.chunks(SIDE_BY_SIDE).flat_map(|lags| {
-            let later: Vec<&[f64]> = lags.iter().map(later).collect();
-            products(&deviations[start..end], &later)
-        });
-        few.collect()
+        let own = PIECE.min(count - start);
+        products_at(&deviations[start..], own, lags.iter().copied())
     });
     let of_pieces: Vec<Vec<(f64, usize)>> = of_pieces.collect();
     // In the order of the pieces, whichever thread was first.
