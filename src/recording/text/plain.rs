@@ -19,8 +19,8 @@ pub(super) enum Role {
     Nothing,
     /// A number of this column of the data.
     Data(usize),
-    /// A part of the time.
-    Time(usize),
+    /// A part of the time, in its unit.
+    Time(TimeUnit),
 }
 
 /// Rows of plain numbers between separators of one byte.
@@ -28,8 +28,6 @@ pub(super) enum Role {
 pub(super) struct PlainRows<'a> {
     /// What each cell is for.
     pub(super) roles: &'a [Role],
-    /// Units of the columns of the time.
-    pub(super) units: &'a [TimeUnit],
     /// Where times begin; none without a time.
     pub(super) origin: Option<Origin>,
     pub(super) separator: u8,
@@ -165,8 +163,7 @@ impl PlainRows<'_> {
                     values[position][at] = value;
                     length
                 }
-                Role::Time(position) => {
-                    let unit = self.units[position];
+                Role::Time(unit) => {
                     let (part, length) = plain_stamp(rest, self.separator, unit)?;
                     stamp = stamp.plus(part);
                     length
@@ -304,8 +301,7 @@ mod tests {
             column.values.push(0.0);
         }
         let rows = PlainRows {
-            roles: &[Role::Time(0), Role::Data(1), Role::Data(0)],
-            units: &[TimeUnit::Seconds],
+            roles: &[Role::Time(TimeUnit::Seconds), Role::Data(1), Role::Data(0)],
             origin: Some(time.origin()),
             separator: b',',
         };

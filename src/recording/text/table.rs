@@ -251,8 +251,8 @@ impl Table {
         for (position, index) in chosen.data.iter().enumerate() {
             roles[*index] = Role::Data(position);
         }
-        for (position, (index, _)) in chosen.time.iter().enumerate() {
-            roles[*index] = Role::Time(position);
+        for (index, unit) in &chosen.time {
+            roles[*index] = Role::Time(*unit);
         }
         let line = layout.line(&chosen);
         let found = layout.format(&chosen, wanted.format);
@@ -361,10 +361,8 @@ impl Table {
             return Ok((0, 0));
         };
         let Columns { data, time, .. } = &mut self.columns;
-        let units = time.as_ref().map(|time| time.units.clone());
         let rows = PlainRows {
             roles: &self.roles,
-            units: &units.unwrap_or_default(),
             origin: time.as_ref().map(TimeColumn::origin),
             separator,
         };
@@ -480,11 +478,8 @@ impl Table {
                 let values = &mut self.columns.data[position].values;
                 push(values, value).map_err(CellFault::Memory)
             }
-            Role::Time(position) => {
-                let Some(time) = &self.columns.time else {
-                    return Ok(());
-                };
-                let part = time.part(position, cell, decimal);
+            Role::Time(unit) => {
+                let part = Stamp::read(cell, unit, decimal);
                 let part = part.map_err(|error| CellFault::Content(error.to_string()))?;
                 *stamp = stamp.plus(part);
                 Ok(())

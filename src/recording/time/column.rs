@@ -3,10 +3,9 @@
 
 use std::io;
 
-use super::stamp::{Stamp, StampError, TICKS, as_float, ticks_of};
+use super::stamp::{Stamp, TICKS, as_float, ticks_of};
 use super::unit::TimeUnit;
 use crate::recording::input::push;
-use crate::recording::layout::words::DecimalSign;
 
 /// Fewest and most bits of a counter that is taken to begin again at 0.
 const COUNTER_BITS: std::ops::RangeInclusive<u32> = 8..=64;
@@ -93,16 +92,6 @@ impl TimeColumn {
     /// Whether it counts samples.
     pub(in crate::recording) fn is_counter(&self) -> bool {
         self.units == [TimeUnit::Samples]
-    }
-
-    /// The part of a stamp that a cell of one of the columns is.
-    pub(in crate::recording) fn part(
-        &self,
-        column: usize,
-        cell: &str,
-        decimal: DecimalSign,
-    ) -> Result<Stamp, StampError> {
-        Stamp::read(cell, self.units[column], decimal)
     }
 
     /// Where the times of stamps that ascend begin.
@@ -225,12 +214,13 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::layout::words::DecimalSign;
 
     fn read(cells: &[&str], unit: TimeUnit, width: Option<f64>) -> TimeColumn {
         let mut time = TimeColumn::new("t".to_owned(), vec![unit], false);
         time.rolls_over_after(width);
         for cell in cells {
-            let stamp = time.part(0, cell, DecimalSign::Point).unwrap();
+            let stamp = Stamp::read(cell, time.units[0], DecimalSign::Point).unwrap();
             time.take(stamp).unwrap();
         }
         time
