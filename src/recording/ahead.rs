@@ -7,6 +7,8 @@ use std::io::{self, BufRead, Read};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
+use super::input::read_buffered;
+
 /// Buffers on their way.
 const BUFFERS: usize = 3;
 
@@ -84,10 +86,7 @@ fn read_block(mut file: &File, mut buffer: Vec<u8>) -> Block {
 
 impl Read for Ahead {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut available = self.fill_buf()?;
-        let count = available.read(buffer)?;
-        self.consume(count);
-        Ok(count)
+        read_buffered(self, buffer)
     }
 }
 

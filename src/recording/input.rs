@@ -115,10 +115,7 @@ impl Input {
 
 impl Read for Input {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut available = self.fill_buf()?;
-        let count = available.read(buffer)?;
-        self.consume(count);
-        Ok(count)
+        read_buffered(self, buffer)
     }
 }
 
@@ -136,6 +133,14 @@ impl BufRead for Input {
         self.left -= count as u64;
         self.reader.consume(count);
     }
+}
+
+/// What `read` is for a reader that has a buffer of its own.
+pub(super) fn read_buffered(reader: &mut impl BufRead, buffer: &mut [u8]) -> io::Result<usize> {
+    let mut available = reader.fill_buf()?;
+    let count = available.read(buffer)?;
+    reader.consume(count);
+    Ok(count)
 }
 
 /// An error of reading: the bound of a stream is about what it holds, all else is the system's.

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufRead, Read};
 
+use crate::recording::input::read_buffered;
 use crate::recording::layout::words::Encoding;
 
 /// A byte order mark in each encoding that has one.
@@ -126,10 +127,7 @@ impl<R: BufRead> BufRead for Transcoded<R> {
 
 impl<R: BufRead> Read for Transcoded<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut available = self.fill_buf()?;
-        let count = available.read(buffer)?;
-        self.consume(count);
-        Ok(count)
+        read_buffered(self, buffer)
     }
 }
 
