@@ -143,7 +143,7 @@ pub(crate) fn mean_of_present(values: &[f64]) -> f64 {
     sum / count as f64
 }
 
-/// Median of some values, which it sorts; 0 of none.
+/// Median of some values, whose order it changes; 0 of none.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     let count = values.len();
     if count == 0 {

@@ -11,6 +11,9 @@ use crate::metrics::noise::memory::record_fit_tau_min_s;
 use crate::metrics::record::{Motion, Record, SAMPLES_MIN, Settings};
 use crate::metrics::sine::fit::{SwingClock, fit_swing};
 
+/// Why nothing is examined.
+const TOO_SHORT: &str = "the record is too short for it";
+
 /// What the words of a log show of themselves: outliers, and an averaging.
 #[derive(Clone, Debug)]
 pub struct Examination {
@@ -25,10 +28,9 @@ impl Examination {
     pub fn of(record: &Record, settings: &Settings) -> Self {
         let words = record.channel_deg_per_h;
         if words.len() < SAMPLES_MIN {
-            let reason = "the record is too short for it";
             return Self {
-                outliers: Err(reason.into()),
-                smoothed: Err(reason.into()),
+                outliers: Err(TOO_SHORT.into()),
+                smoothed: Err(TOO_SHORT.into()),
             };
         }
         let residuals = about_motion(record, &settings.motion);
@@ -61,7 +63,7 @@ impl Examination {
     ) -> Option<ChannelMetrics> {
         if metrics.error.is_some() {
             for key in [&OUTLIERS, &SMOOTHING_TIME] {
-                metrics.miss(key, "the record is too short for it");
+                metrics.miss(key, TOO_SHORT);
             }
             return None;
         }
