@@ -124,22 +124,15 @@ impl<'a> Program<'a> {
         self.finished(session, answers)
     }
 
-    /// What a fresh run of the program makes of some words in blocks of so many, of which nobody hears.
-    fn afresh(&self, words: &[f64], block: u32) -> Result<Vec<f64>, Halt> {
-        let mut session = self.start(block, self.deaf)?;
-        let answers = in_blocks(&mut session, words, block)?;
-        self.finished(session, answers)
-    }
-
-    /// The same of a record, by a stateless program that may have answered another before.
-    fn another_record(&self, words: &[f64]) -> Result<Vec<f64>, Halt> {
-        let block = self.block(words.len());
+    /// What it makes of other words in blocks of so many, of which nobody hears: in a process of its own, unless
+    /// a stateless program has answered another record of as many before.
+    fn over_others(&self, words: &[f64], block: u32) -> Result<Vec<f64>, Halt> {
         let mut session = match self.idle_of(block) {
             Some(session) => session,
             None => self.start(block, self.deaf)?,
         };
         let answers = in_blocks(&mut session, words, block)?;
-        if !session.is_stateless() {
+        if self.config.mode == ProcessMode::Stream || !session.is_stateless() {
             return self.finished(session, answers);
         }
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
@@ -163,10 +156,7 @@ impl<'a> Program<'a> {
 
     /// What it makes of words beside the record; none where the program fails on them.
     fn beside(&self, words: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
-        Self::unless_failed(match self.config.mode {
-            ProcessMode::Stream => self.afresh(words, self.config.block_samples),
-            ProcessMode::Record => self.another_record(words),
-        })
+        Self::unless_failed(self.over_others(words, self.block(words.len())))
     }
 
     /// None where the program failed.
@@ -261,7 +251,7 @@ impl Subject for Program<'_> {
     }
 
     fn answer_word_by_word(&self, words_deg_per_h: &[f64]) -> Result<Option<Vec<f64>>, Unfinished> {
-        Self::unless_failed(self.afresh(words_deg_per_h, 1))
+        Self::unless_failed(self.over_others(words_deg_per_h, 1))
     }
 
     fn handing(&self) -> Handing {
