@@ -36,15 +36,3 @@ pub struct InverseCorrelation<'a, F> {
     /// Forgetting factor alpha.
     pub alpha: F,
 }
-
-/// The ring of L as RAMA holds it.
-///
-/// * `line`: regressors, newest first. * `head`: slot of the newest.
-pub(super) fn ring<F: Fp>(line: &[F], head: usize) -> Vec<F> {
-    let count = line.len();
-    let mut words = vec![F::ZERO; count];
-    for (j, word) in line.iter().enumerate() {
-        words[(head + count - j) % count] = *word;
-    }
-    words
-}

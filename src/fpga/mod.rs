@@ -27,6 +27,7 @@ pub mod float_unit;
 pub mod front_end;
 pub mod health;
 pub mod kinds;
+mod line;
 pub mod lms;
 pub mod machine;
 #[doc(hidden)]

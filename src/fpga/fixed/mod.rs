@@ -26,7 +26,6 @@ mod datapath;
 mod exact;
 mod format;
 mod kinds;
-mod line;
 pub mod lms;
 mod pipeline;
 mod registers;

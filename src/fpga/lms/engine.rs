@@ -9,18 +9,17 @@
 //! ```
 
 use super::config::{DesiredSource, LmsConfig};
-use crate::fpga::engine::{Engine, ring};
+use crate::fpga::engine::Engine;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
+use crate::fpga::line::DelayLine;
 use crate::vocabulary::UpdateSign;
 
 /// Clock-less LMS and NLMS engine.
 #[derive(Clone, Debug)]
 pub struct LmsEngine<F> {
     config: LmsConfig<F>,
-    head: usize,
-    /// Regressors, newest first.
-    line: Vec<F>,
+    line: DelayLine<F>,
     weights: Vec<F>,
     previous: F,
 }
@@ -31,8 +30,7 @@ impl<F: Fp> LmsEngine<F> {
     pub fn new(config: LmsConfig<F>) -> Self {
         Self {
             config,
-            head: config.tap_count - 1,
-            line: vec![F::ZERO; config.tap_count],
+            line: DelayLine::new(config.tap_count, F::ZERO),
             weights: vec![F::ZERO; config.tap_count],
             previous: F::ZERO,
         }
@@ -52,7 +50,7 @@ impl<F: Fp> LmsEngine<F> {
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<F> {
-        ring(&self.line, self.head)
+        self.line.ring()
     }
 
     /// The words RAMB holds after the last sample: W.
@@ -65,9 +63,7 @@ impl<F: Fp> LmsEngine<F> {
 impl<F: Fp> Engine<F> for LmsEngine<F> {
     #[inline]
     fn process(&mut self, pair: Pair<F>) -> F {
-        self.head = (self.head + 1) % self.config.tap_count;
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
+        self.line.shift(pair.input);
         let desired = match self.config.desired {
             DesiredSource::MeanOfTwoNewest => pair.input.add(self.previous).mul(self.config.half),
             DesiredSource::Port => pair.desired,
@@ -76,7 +72,7 @@ impl<F: Fp> Engine<F> for LmsEngine<F> {
         let factor = match self.config.regularisation {
             Some(first) => {
                 let mut energy = first;
-                for l_j in &self.line {
+                for l_j in self.line.words() {
                     energy = energy.add(l_j.mul(*l_j));
                 }
                 self.config.step_size.div(energy)
@@ -84,11 +80,11 @@ impl<F: Fp> Engine<F> for LmsEngine<F> {
             None => self.config.step_size,
         };
         let mut output = F::ZERO;
-        for (l_j, w_j) in self.line.iter().zip(&self.weights) {
+        for (l_j, w_j) in self.line.words().iter().zip(&self.weights) {
             output = output.add(l_j.mul(*w_j));
         }
         let error = desired.sub(output).mul(factor);
-        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
+        for (l_j, w_j) in self.line.words().iter().zip(&mut self.weights) {
             let correction = l_j.mul(error);
             *w_j = match self.config.update_sign {
                 UpdateSign::Corrected => w_j.add(correction),

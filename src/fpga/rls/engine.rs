@@ -12,9 +12,10 @@
 //! ```
 
 use super::config::RlsConfig;
-use crate::fpga::engine::{Engine, InverseCorrelation, ring};
+use crate::fpga::engine::{Engine, InverseCorrelation};
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
+use crate::fpga::line::ring;
 use crate::vocabulary::{Division, UpdateOrder, UpdateSign};
 
 /// Clock-less RLS engine.

@@ -11,17 +11,16 @@
 //! ```
 
 use super::config::{SignLmsConfig, clamp, signed};
-use crate::fpga::engine::{Engine, ring};
+use crate::fpga::engine::Engine;
 use crate::fpga::float_unit::Fp;
 use crate::fpga::front_end::Pair;
+use crate::fpga::line::DelayLine;
 
 /// Clock-less engine of the line enhancer.
 #[derive(Clone, Debug)]
 pub struct SignLmsEngine<F> {
     config: SignLmsConfig<F>,
-    head: usize,
-    /// Regressors, newest first.
-    line: Vec<F>,
+    line: DelayLine<F>,
     weights: Vec<F>,
     norm: F,
     fresh: F,
@@ -35,8 +34,7 @@ impl<F: Fp> SignLmsEngine<F> {
     pub fn new(config: SignLmsConfig<F>) -> Self {
         Self {
             config,
-            head: config.tap_count - 1,
-            line: vec![F::ZERO; config.tap_count],
+            line: DelayLine::new(config.tap_count, F::ZERO),
             weights: vec![config.initial_weight; config.tap_count],
             norm: F::ZERO,
             fresh: F::ZERO,
@@ -65,7 +63,7 @@ impl<F: Fp> SignLmsEngine<F> {
     /// The words RAMA holds after the last sample: the ring of L.
     #[must_use]
     pub fn rama(&self) -> Vec<F> {
-        ring(&self.line, self.head)
+        self.line.ring()
     }
 
     /// The words RAMB holds after the last sample: W.
@@ -110,18 +108,15 @@ impl<F: Fp> SignLmsEngine<F> {
 impl<F: Fp> Engine<F> for SignLmsEngine<F> {
     #[inline]
     fn process(&mut self, pair: Pair<F>) -> F {
-        let n = self.config.tap_count;
-        self.head = (self.head + 1) % n;
-        let leaving = self.line[n - 1];
-        self.line.rotate_right(1);
-        self.line[0] = pair.input;
+        let leaving = self.line.words()[self.config.tap_count - 1];
+        self.line.shift(pair.input);
         self.slide(pair.input.mul(pair.input), leaving.mul(leaving));
         let step = self
             .config
             .step
             .div(self.config.regularisation.add(self.norm));
         let mut output = F::ZERO;
-        for (l_j, w_j) in self.line.iter().zip(&self.weights) {
+        for (l_j, w_j) in self.line.words().iter().zip(&self.weights) {
             output = output.add(l_j.mul(*w_j));
         }
         let error = pair.desired.sub(output);
@@ -132,7 +127,7 @@ impl<F: Fp> Engine<F> for SignLmsEngine<F> {
         } else {
             signed(step, error)
         };
-        for (l_j, w_j) in self.line.iter().zip(&mut self.weights) {
+        for (l_j, w_j) in self.line.words().iter().zip(&mut self.weights) {
             *w_j = w_j.add(l_j.mul(gain));
         }
         output

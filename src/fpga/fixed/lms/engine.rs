@@ -3,15 +3,15 @@
 use super::config::{FixedLmsConfig, Step};
 use crate::fpga::fixed::CodePair;
 use crate::fpga::fixed::exact::dot;
-use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
+use crate::fpga::line::DelayLine;
 
 /// Clock-less engine of LMS and NLMS in fixed point.
 #[derive(Clone, Debug)]
 pub struct FixedLmsEngine {
     config: FixedLmsConfig,
-    line: DelayLine,
+    line: DelayLine<i64>,
     weights: Vec<i64>,
     health: FixedHealth,
 }
@@ -22,7 +22,7 @@ impl FixedLmsEngine {
     pub fn new(config: FixedLmsConfig) -> Self {
         Self {
             config,
-            line: DelayLine::new(config.tap_count),
+            line: DelayLine::new(config.tap_count, 0),
             weights: vec![0; config.tap_count],
             health: FixedHealth::default(),
         }

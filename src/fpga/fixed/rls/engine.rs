@@ -3,15 +3,15 @@
 use super::config::FixedRlsConfig;
 use crate::fpga::fixed::CodePair;
 use crate::fpga::fixed::exact::dot;
-use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{CodeMatrix, FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
+use crate::fpga::line::DelayLine;
 
 /// Clock-less engine of the fixed-point filter.
 #[derive(Clone, Debug)]
 pub struct FixedRlsEngine {
     config: FixedRlsConfig,
-    line: DelayLine,
+    line: DelayLine<i64>,
     intermediate: Vec<i64>,
     gain: Vec<i64>,
     weights: Vec<i64>,
@@ -31,7 +31,7 @@ impl FixedRlsEngine {
         }
         Self {
             config,
-            line: DelayLine::new(p),
+            line: DelayLine::new(p, 0),
             intermediate: vec![0; p],
             gain: vec![0; p],
             weights: vec![0; p],

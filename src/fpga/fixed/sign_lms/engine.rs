@@ -3,15 +3,15 @@
 use super::config::FixedSignLmsConfig;
 use crate::fpga::fixed::CodePair;
 use crate::fpga::fixed::exact::dot;
-use crate::fpga::fixed::line::DelayLine;
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedHealth};
 use crate::fpga::fixed::signal::SignalName;
+use crate::fpga::line::DelayLine;
 
 /// Clock-less engine of the line enhancer in fixed point.
 #[derive(Clone, Debug)]
 pub struct FixedSignLmsEngine {
     config: FixedSignLmsConfig,
-    line: DelayLine,
+    line: DelayLine<i64>,
     weights: Vec<i64>,
     held_samples: usize,
     health: FixedHealth,
@@ -23,7 +23,7 @@ impl FixedSignLmsEngine {
     pub fn new(config: FixedSignLmsConfig) -> Self {
         Self {
             config,
-            line: DelayLine::new(config.tap_count),
+            line: DelayLine::new(config.tap_count, 0),
             weights: vec![config.initial_weight; config.tap_count],
             held_samples: 0,
             health: FixedHealth::default(),
