@@ -106,14 +106,30 @@ pub(in crate::recording) fn ticks_of(unit: TimeUnit) -> i128 {
     unit.nanoseconds().map_or(TICKS, |ns| ns * TICKS_PER_NS)
 }
 
-/// A count of ticks as binary64.
+/// A count of ticks as binary64, rounded once.
+#[inline]
 #[expect(
     clippy::cast_precision_loss,
     reason = "differences of stamps are small, and rounded once here"
 )]
 pub(in crate::recording) fn as_float(ticks: i128) -> f64 {
-    // What fits into 64 bits, as most differences do, is converted faster.
-    i64::try_from(ticks).map_or_else(|_| ticks as f64, |ticks| ticks as f64)
+    // What fits into 64 bits, as most differences do, is converted by one instruction.
+    match i64::try_from(ticks) {
+        Ok(ticks) => ticks as f64,
+        Err(_) => of_many_ticks(ticks),
+    }
+}
+
+/// A count of ticks beyond 64 bits as binary64: a call of its own, so that a processor does not convert every
+/// count both ways and choose.
+#[cold]
+#[inline(never)]
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "differences of stamps are small, and rounded once here"
+)]
+fn of_many_ticks(ticks: i128) -> f64 {
+    ticks as f64
 }
 
 impl Stamp {
