@@ -326,6 +326,8 @@ fn bad_logs_and_usage_exit_2_and_unreadable_files_74() {
         ("analyze", "100 --warm-up-s 3"),
         ("analyze", "100 --motion swing:30"),
         ("analyze", "100 --motion swing:-1"),
+        ("analyze", "100 --rows 1-2000"),
+        ("analyze", "100 --rows 5:2"),
         ("analyze", "100 --scale 0"),
         ("filter", "100"),
         ("filter", "100 --filters bare.toml"),

@@ -552,7 +552,7 @@ fn what_is_in_doubt_is_an_error_that_names_the_option() {
         (
             "g\n1\n2\n",
             LogFormat {
-                rows: Some("5:2".to_owned()),
+                rows: Some("5:7".parse().expect("rows")),
                 ..at(1.0, "deg/h")
             },
         ),

@@ -54,6 +54,7 @@ pub use log::read::{
     read_unbroken_log, read_unbroken_logs,
 };
 pub use log::record::{Log, Stretch};
+pub use log::rows::{LogRows, UnknownLogRows};
 pub use log::stream::{LogSource, LogStream, open_live_log, open_log};
 pub use log::words::read_words;
 pub use points::{PointsFormat, RecordedPoints, read_points};

@@ -1,6 +1,7 @@
 //! What may be said of a log: one declaration for files (`[log]`), options and their documents.
 
 use super::motion::LogMotion;
+use super::rows::LogRows;
 use crate::declare::table;
 use crate::recording::layout::words::{
     DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind, WordType,
@@ -86,7 +87,7 @@ table! {
         /// What a word for a missing number is: `refuse`, or `gap`.
         missing: Option<MissingWords>, example "gap";
         /// First row that is taken, from 1, and the last: `1001:5000`; either may be left out.
-        rows: Option<String>, example "1001:5000";
+        rows: Option<LogRows>, example "1001:5000";
         /// Time from the first stamp on at which the part that is taken begins.
         from_s: Option<f64>, example 10.0, in 0.0..=1e12, "s";
         /// Time at which it ends.

@@ -7,6 +7,7 @@ pub(super) mod motion;
 pub(super) mod rates;
 pub(super) mod read;
 pub(super) mod record;
+pub(super) mod rows;
 pub(super) mod stream;
 pub(super) mod stretches;
 pub(super) mod words;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::format::LogFormat;
 use super::gaps::Gaps;
+use super::rows::LogRows;
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
@@ -17,10 +18,8 @@ const BOUNDS: [&str; 2] = ["from_s", "to_s"];
 /// Why no part is taken.
 #[derive(Debug, thiserror::Error)]
 enum PartError {
-    #[error("--rows {0}: expected two rows from 1 on with a colon between them, as 1001:5000")]
-    Rows(String),
     #[error("--rows {rows} leaves no row: the log has {count}")]
-    NoRow { rows: String, count: usize },
+    NoRow { rows: LogRows, count: usize },
     #[error("no sample lies from {from_s} s on{}: the log ends at {end_s} s", until(*.to_s))]
     NoTime { from_s: f64, to_s: f64, end_s: f64 },
     #[error("it says from {from_s} s to {to_s} s: expected stretches that end behind their start")]
@@ -52,8 +51,10 @@ pub(in crate::recording) fn parts(
     format: &LogFormat,
 ) -> Result<Vec<Range<usize>>, LogError> {
     let refuse = |error: PartError| LogError::of_file(path, error);
-    let rows = match &format.rows {
-        Some(rows) => rows_of(rows, count).map_err(refuse)?,
+    let rows = match format.rows {
+        Some(rows) => rows
+            .within(count)
+            .ok_or_else(|| refuse(PartError::NoRow { rows, count }))?,
         None => 0..count,
     };
     let bounds = match &format.segments {
@@ -102,28 +103,6 @@ fn clock<'a>(columns: &'a Columns, format: &LogFormat) -> Option<Box<dyn Fn(usiz
         (None, Some(rate)) => Some(Box::new(by_rate(rate))),
         (None, None) => None,
     }
-}
-
-/// Rows `first:last` from 1, either of which may be left out.
-fn rows_of(text: &str, count: usize) -> Result<Range<usize>, PartError> {
-    let malformed = || PartError::Rows(text.to_owned());
-    let (first, last) = text.split_once(':').ok_or_else(malformed)?;
-    let number = |text: &str, default: usize| match text.trim() {
-        "" => Ok(default),
-        text => text
-            .parse::<usize>()
-            .ok()
-            .filter(|it| *it > 0)
-            .ok_or_else(malformed),
-    };
-    let (first, last) = (number(first, 1)?, number(last, count)?);
-    if first > last || first > count {
-        return Err(PartError::NoRow {
-            rows: text.to_owned(),
-            count,
-        });
-    }
-    Ok(first - 1..last.min(count))
 }
 
 /// Stretches of a table.
