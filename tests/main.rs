@@ -42,6 +42,7 @@ mod data_sheet_noise;
 mod determinism;
 mod docket;
 mod documents;
+mod en_cl_fix;
 mod encoder;
 mod encoder_rate;
 mod extremes;
