@@ -4,7 +4,7 @@ use super::divergence::{Divergence, Fault, Life, Watch};
 use super::filter::{Filter, Output, step_each};
 use super::front_end::{FrontEnd, FrontEndConfig, Register, adaptive_rule};
 use crate::signal::{FilterShape, WeightRule};
-use crate::simd::with_wide_vectors;
+use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 use crate::vocabulary::DesiredSignal;
 
 /// Weights and the rule that updates them, on regressors and desired values given directly.
@@ -113,9 +113,9 @@ impl<C: Core> CoreFilter<C> {
     }
 }
 
-/// Outputs that are summed side by side: each in the order of [`dot`], without waiting for the sum of
-/// another.
-const LANES: usize = 16;
+/// Vectors of outputs that are summed side by side: each output in the order of [`dot`], without waiting for
+/// the sum of another.
+const SIDE_BY_SIDE: usize = 2;
 
 /// Weights from which on sums side by side are faster than one by one.
 const WEIGHTS_MIN: usize = 8;
@@ -123,26 +123,29 @@ const WEIGHTS_MIN: usize = 8;
 /// The `count` inner products of the weights with the samples, oldest first, that begin with the first
 /// `weights.len()` of them.
 fn convolved(weights: &[f64], samples: &[f64], count: usize) -> Vec<f64> {
-    with_wide_vectors(
-        #[inline(always)]
-        || convolved_in_lanes(weights, samples, count),
-    )
+    with_wide_vectors!(simd => convolved_in_lanes(simd, weights, samples, count))
 }
 
 #[inline(always)]
-fn convolved_in_lanes(weights: &[f64], samples: &[f64], count: usize) -> Vec<f64> {
+fn convolved_in_lanes<S: Simd>(
+    simd: S,
+    weights: &[f64],
+    samples: &[f64],
+    count: usize,
+) -> Vec<f64> {
     let newest = weights.len() - 1;
+    let nothing = Lanes::splat(simd, std::iter::empty::<f64>().sum());
     let mut words = Vec::with_capacity(count);
-    while words.len() + LANES <= count {
-        let mut sums = [std::iter::empty::<f64>().sum::<f64>(); LANES];
+    while words.len() + SIDE_BY_SIDE * LANES <= count {
+        let mut sums = [nothing; SIDE_BY_SIDE];
         for (age, weight) in weights.iter().enumerate() {
             let first = newest + words.len() - age;
-            let lanes = &samples[first..first + LANES];
-            for (sum, sample) in sums.iter_mut().zip(lanes) {
-                *sum += weight * sample;
+            let lanes = samples[first..].as_chunks().0;
+            for (sum, lanes) in sums.iter_mut().zip(lanes) {
+                *sum = *sum + Lanes::splat(simd, *weight) * Lanes::of(simd, lanes);
             }
         }
-        words.extend(sums);
+        words.extend(sums.into_iter().flat_map(Lanes::to_array));
     }
     for word in words.len()..count {
         let newest_first = samples[word..=word + newest].iter().rev();

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::simd::with_wide_vectors;
+use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 
 /// Samples that one thread integrates at a time.
 const PART: usize = 1 << 16;
@@ -120,19 +120,17 @@ pub(crate) fn add_squares(
     angle: &[f64],
     (first, end): (usize, usize),
 ) {
-    with_wide_vectors(
-        #[inline(always)]
-        || {
-            let sums = sums.chunks_mut(SIDE_BY_SIDE);
-            for (sums, factors) in sums.zip(factors.chunks(SIDE_BY_SIDE)) {
-                add_squares_of_few(sums, factors, angle, (first, end));
-            }
-        },
-    );
+    with_wide_vectors!(simd => {
+        let sums = sums.chunks_mut(SIDE_BY_SIDE);
+        for (sums, factors) in sums.zip(factors.chunks(SIDE_BY_SIDE)) {
+            add_squares_of_few(simd, sums, factors, angle, (first, end));
+        }
+    });
 }
 
 #[inline(always)]
-fn add_squares_of_few(
+fn add_squares_of_few<S: Simd>(
+    simd: S,
     sums: &mut [f64],
     factors: &[usize],
     angle: &[f64],
@@ -142,7 +140,7 @@ fn add_squares_of_few(
     if let Ok(few) = <[usize; SIDE_BY_SIDE]>::try_from(factors)
         && few.iter().all(|&m| last(m) == end)
     {
-        let squares = squares_in_lanes(few.map(|m| differing(angle, first, end, m)));
+        let squares = squares_in_lanes(simd, few.map(|m| differing(angle, first, end, m)));
         for (sum, squares) in sums.iter_mut().zip(squares) {
             *sum += squares;
         }
@@ -150,7 +148,7 @@ fn add_squares_of_few(
     }
     for (sum, &m) in sums.iter_mut().zip(factors) {
         if first < last(m) {
-            let [squares] = squares_in_lanes([differing(angle, first, last(m), m)]);
+            let [squares] = squares_in_lanes(simd, [differing(angle, first, last(m), m)]);
             *sum += squares;
         }
     }
@@ -162,30 +160,24 @@ fn differing(angle: &[f64], first: usize, last: usize, m: usize) -> [&[f64]; 3] 
     [0, m, 2 * m].map(|later| &angle[first + later..last + later])
 }
 
-/// `sum (c - 2b + a)^2` in eight interleaved sums, which the compiler turns into vectors.
+/// `sum (c - 2b + a)^2` in eight interleaved sums.
 pub(crate) fn squared_second_differences(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
-    let [squares] = with_wide_vectors(
-        #[inline(always)]
-        || squares_in_lanes([[a, b, c]]),
-    );
+    let [squares] = with_wide_vectors!(simd => squares_in_lanes(simd, [[a, b, c]]));
     squares
 }
 
 /// The same of several a, b, c, all of one length.
 #[inline(always)]
-fn squares_in_lanes<const N: usize>(parts: [[&[f64]; 3]; N]) -> [f64; N] {
-    const LANES: usize = 8;
-    let mut lanes = [[0.0; LANES]; N];
+fn squares_in_lanes<S: Simd, const N: usize>(simd: S, parts: [[&[f64]; 3]; N]) -> [f64; N] {
+    let mut lanes = [Lanes::splat(simd, 0.0); N];
     let length = parts[0][0].len();
     let chunks = length / LANES;
     let whole = parts.map(|part| part.map(|angles| &angles.as_chunks::<LANES>().0[..chunks]));
     for chunk in 0..chunks {
-        for (lanes, [a, b, c]) in lanes.iter_mut().zip(&whole) {
-            let (a, b, c) = (&a[chunk], &b[chunk], &c[chunk]);
-            for lane in 0..LANES {
-                let difference = (a[lane] + c[lane]) - 2.0 * b[lane];
-                lanes[lane] += difference * difference;
-            }
+        for (lanes, angles) in lanes.iter_mut().zip(&whole) {
+            let [a, b, c] = angles.map(|angles| Lanes::of(simd, &angles[chunk]));
+            let difference = (a + c) - Lanes::splat(simd, 2.0) * b;
+            *lanes = *lanes + difference * difference;
         }
     }
     let mut sums = [0.0; N];
@@ -196,7 +188,7 @@ fn squares_in_lanes<const N: usize>(parts: [[&[f64]; 3]; N]) -> [f64; N] {
                 difference * difference
             })
             .sum();
-        *sum = lanes.iter().sum::<f64>() + rest;
+        *sum = lanes.to_array().iter().sum::<f64>() + rest;
     }
     sums
 }

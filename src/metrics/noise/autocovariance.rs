@@ -8,7 +8,7 @@ use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::curve::{Column, CurveKey};
 use crate::metrics::key::metric::{Applies, MetricKey, Needs};
-use crate::simd::with_wide_vectors;
+use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 
 /// Lag.
 pub static LAG: Column = Column::new("lag_s", "s", "time between the two samples");
@@ -357,10 +357,7 @@ fn products(a: &[f64], others: &[&[f64]]) -> Vec<(f64, usize)> {
 }
 
 fn products_of<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [(f64, usize); N] {
-    let sums = with_wide_vectors(
-        #[inline(always)]
-        || dots(a, others),
-    );
+    let sums = with_wide_vectors!(simd => dots(simd, a, others));
     std::array::from_fn(|at| {
         if !sums[at].is_nan() {
             return (sums[at], others[at].len());
@@ -373,35 +370,30 @@ fn products_of<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [(f64, usize);
 }
 
 /// Dot products of a slice with several, none longer than it, each over its own length in eight interleaved
-/// sums, which the compiler turns into vectors.
+/// sums.
 #[inline(always)]
-fn dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> [f64; N] {
-    const LANES: usize = 8;
-    let mut lanes = [[0.0; LANES]; N];
+fn dots<S: Simd, const N: usize>(simd: S, a: &[f64], others: [&[f64]; N]) -> [f64; N] {
+    let mut lanes = [Lanes::splat(simd, 0.0); N];
     let a_chunks = a.as_chunks::<LANES>().0;
     let chunks = others.map(|other| other.as_chunks::<LANES>().0);
     let common = chunks.iter().map(|own| own.len()).min().unwrap_or(0);
     let whole = chunks.map(|own| &own[..common]);
     for (index, a) in a_chunks[..common].iter().enumerate() {
+        let a = Lanes::of(simd, a);
         for (lanes, other) in lanes.iter_mut().zip(&whole) {
-            let b = &other[index];
-            for lane in 0..LANES {
-                lanes[lane] += a[lane] * b[lane];
-            }
+            *lanes = *lanes + a * Lanes::of(simd, &other[index]);
         }
     }
     let mut sums = [0.0; N];
     for (index, sum) in sums.iter_mut().enumerate() {
         let own = chunks[index];
         for (a, b) in a_chunks[common..].iter().zip(&own[common..]) {
-            for lane in 0..LANES {
-                lanes[index][lane] += a[lane] * b[lane];
-            }
+            lanes[index] = lanes[index] + Lanes::of(simd, a) * Lanes::of(simd, b);
         }
         let done = own.len() * LANES;
         let rest = a[done..].iter().zip(&others[index][done..]);
         let rest: f64 = rest.map(|(a, b)| a * b).sum();
-        *sum = lanes[index].iter().sum::<f64>() + rest;
+        *sum = lanes[index].to_array().iter().sum::<f64>() + rest;
     }
     sums
 }
