@@ -1,4 +1,4 @@
-//! Rows of plain numbers: without quotes, and without blanks around them.
+//! Rows of plain numbers: without quotes.
 
 use std::io;
 
@@ -23,13 +23,14 @@ pub(super) enum Role {
     Time(TimeUnit),
 }
 
-/// Rows of plain numbers between separators of one byte.
+/// Rows of plain numbers between separators of one byte, with blanks around them or without.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlainRows<'a> {
     /// What each cell is for.
     pub(super) roles: &'a [Role],
     /// Where times begin; none without a time.
     pub(super) origin: Option<Origin>,
+    /// A blank stands for any number of them.
     pub(super) separator: u8,
 }
 
@@ -149,36 +150,66 @@ impl PlainRows<'_> {
     /// Stamp and length, with its end, of the row at the beginning of some bytes; its numbers go to their places.
     #[inline]
     fn row(&self, bytes: &[u8], at: usize, values: &mut [&mut [f64]]) -> Option<(Stamp, usize)> {
+        let separator = self.separator;
+        let mut rest = &bytes[blanks_at_start(bytes, separator)..];
         // Comments do not begin as numbers do.
-        if !matches!(bytes.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
+        if !matches!(rest.first(), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
             return None;
         }
-        let (mut rest, mut stamp) = (bytes, Stamp::NOTHING);
-        let width = self.roles.len();
+        let mut stamp = Stamp::NOTHING;
+        let last = self.roles.len() - 1;
         for (index, role) in self.roles.iter().enumerate() {
             let length = match *role {
-                Role::Nothing => plain_length(rest, self.separator),
+                Role::Nothing => plain_length(rest, separator),
                 Role::Data(position) => {
-                    let (value, length) = plain_number(rest, self.separator)?;
+                    let (value, length) = plain_number(rest, separator)?;
                     values[position][at] = value;
                     length
                 }
                 Role::Time(unit) => {
-                    let (part, length) = plain_stamp(rest, self.separator, unit)?;
+                    let (part, length) = plain_stamp(rest, separator, unit)?;
                     stamp = stamp.plus(part);
                     length
                 }
             };
-            let end = match &rest[length..] {
-                [byte, ..] if index + 1 < width && *byte == self.separator => 1,
-                [b'\n', ..] if index + 1 == width => 1,
-                [b'\r', b'\n', ..] if index + 1 == width => 2,
-                _ => return None,
+            // Between blanks no cell is empty.
+            if length == 0 && separator == b' ' {
+                return None;
+            }
+            rest = match index == last {
+                true => behind_row(&rest[length..], separator)?,
+                false => behind_cell(&rest[length..], separator)?,
             };
-            rest = &rest[length + end..];
         }
         Some((stamp, bytes.len() - rest.len()))
     }
+}
+
+/// What stands behind the separator of a cell and the blanks around it; nothing where there is no separator.
+#[inline]
+fn behind_cell(rest: &[u8], separator: u8) -> Option<&[u8]> {
+    let blanks = blanks_at_start(rest, separator);
+    if separator == b' ' {
+        return (blanks > 0).then(|| &rest[blanks..]);
+    }
+    let rest = rest[blanks..].strip_prefix(&[separator])?;
+    Some(&rest[blanks_at_start(rest, separator)..])
+}
+
+/// What stands behind the end of a row and the blanks before it; nothing where that is not the end.
+#[inline]
+fn behind_row(rest: &[u8], separator: u8) -> Option<&[u8]> {
+    match &rest[blanks_at_start(rest, separator)..] {
+        [b'\n', behind @ ..] | [b'\r', b'\n', behind @ ..] => Some(behind),
+        _ => None,
+    }
+}
+
+/// Blanks at the beginning of some bytes: those that separate, or those around a separator.
+#[inline]
+fn blanks_at_start(bytes: &[u8], separator: u8) -> usize {
+    let is_blank = |byte: &u8| *byte == b' ' || (*byte == b'\t' && separator != b'\t');
+    bytes.iter().take_while(|byte| is_blank(byte)).count()
 }
 
 impl Places<'_> {
@@ -253,13 +284,13 @@ pub(super) fn plain_stamp(rest: &[u8], separator: u8, unit: TimeUnit) -> Option<
 #[inline]
 fn is_end(rest: &[u8], length: usize, separator: u8) -> bool {
     let byte = rest.get(length);
-    byte.is_none_or(|byte| *byte == separator || matches!(byte, b'\n' | b'\r'))
+    byte.is_none_or(|byte| *byte == separator || matches!(byte, b'\n' | b'\r' | b' ' | b'\t'))
 }
 
-/// The cell at the beginning of a row without quotes and without blanks around it.
+/// The cell at the beginning of a row, without quotes and without the blanks behind it.
 fn plain_cell(rest: &[u8], separator: u8) -> Option<&str> {
     let cell = std::str::from_utf8(&rest[..plain_length(rest, separator)]).ok()?;
-    (cell.trim().len() == cell.len()).then_some(cell)
+    Some(cell.trim_end())
 }
 
 /// Bytes of a cell: up to the separator, the end, or what is not plain.
@@ -284,8 +315,17 @@ mod tests {
         (0..rows).map(row).collect()
     }
 
-    /// Columns behind a first row, and what so many threads append of some bytes.
+    /// Columns behind a first row, and what so many threads append of some bytes between commas.
     fn appended(
+        bytes: &[u8],
+        most: usize,
+        threads: usize,
+    ) -> (Vec<Column>, TimeColumn, (usize, usize)) {
+        appended_between(b',', bytes, most, threads)
+    }
+
+    fn appended_between(
+        separator: u8,
         bytes: &[u8],
         most: usize,
         threads: usize,
@@ -303,7 +343,7 @@ mod tests {
         let rows = PlainRows {
             roles: &[Role::Time(TimeUnit::Seconds), Role::Data(1), Role::Data(0)],
             origin: Some(time.origin()),
-            separator: b',',
+            separator,
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.expect("threads");
@@ -357,6 +397,35 @@ mod tests {
             let text = text(8000, odd_row, "1.5,1,1\n");
             let (.., found) = appended(text.as_bytes(), usize::MAX, 2);
             assert_eq!(found.0, odd_row);
+        }
+    }
+
+    #[test]
+    fn blanks_stand_around_cells_or_between_them() {
+        for (separator, text, rows) in [
+            (b',', " 1.5, -2 ,\t3e0 \r\n2.5 ,4,5\n", 2),
+            (b',', "1.5,2,3\n2.5, ,4\n", 1),
+            (b',', "1.5 2,3,4\n", 0),
+            (b'\t', "1.5 \t 2\t3\n2.5\t\t4\n", 1),
+            (b' ', "  1.5   -2\t3e0 \n 2.5 4 5\r\n", 2),
+            (b' ', "1.5 2 \n", 0),
+            (b' ', "1.5 2 3 4\n", 0),
+            (b' ', "1.5 2 3\n# 2.5 4 5\n", 1),
+        ] {
+            let (columns, time, found) =
+                appended_between(separator, text.as_bytes(), usize::MAX, 1);
+            assert_eq!(found.0, rows, "{text:?}");
+            let row = |at: usize| -> Vec<f64> {
+                let words = [&columns[1].values, &columns[0].values].map(|column| column[at].abs());
+                [time.stamps[at]].into_iter().chain(words).collect()
+            };
+            if rows > 0 {
+                assert_eq!(row(1), vec![1.5, 2.0, 3.0], "{text:?}");
+            }
+            if rows > 1 {
+                assert_eq!(row(2), vec![2.5, 4.0, 5.0], "{text:?}");
+                assert_eq!(found.1, text.len(), "{text:?}");
+            }
         }
     }
 }

@@ -231,7 +231,7 @@ struct Table {
     heads: Vec<String>,
     /// Rows that were read and taken away.
     taken: usize,
-    /// What stands between plain numbers, if it is a byte of its own.
+    /// What stands between plain numbers, if it is one byte; a blank stands for any number of them.
     plain_separator: Option<u8>,
     /// Bytes in which rows of plain numbers are looked for at once.
     plain_bytes: usize,
@@ -273,8 +273,7 @@ impl Table {
         let missing = wanted.format.missing;
         let plain_separator = match layout.delimiter() {
             Delimiter::Character(separator) => u8::try_from(separator).ok(),
-            Delimiter::Blanks if layout.cells == 1 => Some(b' '),
-            Delimiter::Blanks => None,
+            Delimiter::Blanks => Some(b' '),
         };
         let is_plain = layout.decimal == DecimalSign::Point && layout.wrapped.is_none();
         Self {
