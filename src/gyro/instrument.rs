@@ -216,6 +216,9 @@ pub struct WordNoise {
     pub autocovariance_deg2_per_h2: Vec<f64>,
     /// Angle random walk with the rounding of the words, deg/sqrt(h).
     pub angle_random_walk_deg_per_sqrt_h: f64,
+    /// Relative standard deviation of that walk over where the level lies between two codes of the converter,
+    /// which the closed form leaves open.
+    pub walk_scatter_by_level: f64,
     /// Time between output samples, s.
     pub sample_period_s: f64,
 }
@@ -249,6 +252,7 @@ pub fn word_noise(config: &GyroConfig, lags: usize) -> Result<WordNoise, GyroErr
     Ok(WordNoise {
         autocovariance_deg2_per_h2: (0..lags).map(of_means).collect(),
         angle_random_walk_deg_per_sqrt_h: total,
+        walk_scatter_by_level: budget.scatter_by_level(&parts.detector, &parts.coil),
         sample_period_s: sample_period_s(config),
     })
 }

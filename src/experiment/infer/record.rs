@@ -281,6 +281,7 @@ impl RecordTheory {
                 .map(|lag| if lag == 0 { 1.0 } else { 0.0 })
                 .collect(),
             mean_deg_per_h: 1.0,
+            walk_scatter: 0.0,
             slow_deviation_deg_per_h: 0.0,
             sine: None,
             period_s: 1.0,
@@ -382,6 +383,7 @@ impl RecordTheory {
             words: Words {
                 autocovariance: noise.autocovariance_deg2_per_h2,
                 mean_deg_per_h: rad_per_s_to_deg_per_h(mean),
+                walk_scatter: noise.walk_scatter_by_level,
                 slow_deviation_deg_per_h: coefficients.bias_instability_deg_per_h
                     + coefficients.rate_random_walk_deg_per_h_per_sqrt_s * walked,
                 sine: sine(scenario),
@@ -514,7 +516,7 @@ impl RecordTheory {
                     geometry.correlation((own, other), coefficients, words.mean_deg_per_h)
                 })
             }
-            // What the fit leaves is common, what the gain scatters is not.
+            // What the fit and the closed form leave is common, what the gain scatters is not.
             (Form::Walk, Form::Walk) => {
                 let raw = ChannelTheory::raw().angle_random_walk(moment.walk, words);
                 let common = raw.deviation / raw.value;

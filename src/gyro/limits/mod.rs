@@ -183,14 +183,11 @@ fn converter(
     detector: &Detector,
     coil: &Coil,
 ) -> Result<Option<String>, GyroError> {
-    if detector.converter_step_v <= 0.0 {
+    let Some(noise_lsb) = detector.noise_steps(coil.transit_time_s) else {
         return Ok(None);
-    }
+    };
     let count = detector.samples_per_half_period;
-    let density = detector.noise_a2_per_hz();
-    let sample_variance_a2 = count * detector.half_period_variance_a2(density, coil.transit_time_s);
     let step_a = detector.converter_step_v / detector.transimpedance_v_per_a;
-    let noise_lsb = sample_variance_a2.sqrt() / step_a;
     let limit_lsb = noise_limit_lsb();
     if noise_lsb >= limit_lsb {
         return Ok(None);

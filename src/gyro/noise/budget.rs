@@ -1,5 +1,7 @@
 //! Angle random walk by source, in closed form.
 
+use std::f64::consts::{PI, SQRT_2};
+
 use crate::gyro::noise::law::Density;
 use crate::gyro::noise::word_rounding::rate_word_walk;
 use crate::gyro::noise::{COUNT, name_of};
@@ -91,6 +93,32 @@ impl NoiseBudget {
             .hypot(self.rate_word_deg_per_sqrt_h)
     }
 
+    /// Relative standard deviation of the total over where the level lies between two codes of the converter.
+    ///
+    /// Rounding to steps of 1 under Gaussian noise s turns the level u into a mean of the slope
+    /// `1 + 2 c`, `c = -exp(-2 pi^2 s^2) cos(2 pi u)`, and adds to the variance s^2
+    /// `1/12 + c (1 / pi^2 + 4 s^2)`: noise over slope departs from `sqrt(s^2 + 1/12)` by
+    /// `c (1 / pi^2 - 1/3) / (2 (s^2 + 1/12))`. The level moves through a step with the power by a
+    /// thousandth, so that it counts as uniform in it; then `c` has the deviation
+    /// `exp(-2 pi^2 s^2) / sqrt(2)`.
+    ///
+    /// # Source
+    /// First term of the Fourier series of the rounding error: Widrow and Kollar, Quantization Noise,
+    /// 2008, chapter 6.
+    #[must_use]
+    pub fn scatter_by_level(&self, detector: &Detector, coil: &Coil) -> f64 {
+        let Some(noise) = detector.noise_steps(coil.transit_time_s) else {
+            return 0.0;
+        };
+        let share = (self.detection_deg_per_sqrt_h() / self.total_deg_per_sqrt_h()).powi(2);
+        let of_detection = departure_by_level(noise) / SQRT_2;
+        if share.is_finite() {
+            share * of_detection
+        } else {
+            0.0
+        }
+    }
+
     /// Name and angle random walk of each source and of the total, deg/sqrt(h), in report order.
     #[must_use]
     pub fn entries(&self) -> Vec<(&'static str, f64)> {
@@ -101,5 +129,59 @@ impl NoiseBudget {
             .chain([(RATE_WORD, self.rate_word_deg_per_sqrt_h)])
             .chain([(TOTAL, self.total_deg_per_sqrt_h())])
             .collect()
+    }
+}
+
+/// Largest relative departure of noise over slope behind a converter from `sqrt(s^2 + 1/12)`, for noise of s
+/// steps before it.
+fn departure_by_level(noise_steps: f64) -> f64 {
+    let square = noise_steps * noise_steps;
+    let slope = (-2.0 * PI * PI * square).exp();
+    slope * (1.0 / 3.0 - 1.0 / (PI * PI)) / (2.0 * (square + 1.0 / 12.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    use super::departure_by_level;
+
+    /// Mean and variance of a level with noise, rounded to whole numbers.
+    fn rounded(level: f64, noise: f64) -> (f64, f64) {
+        let law = Normal::new(level, noise).expect("some noise");
+        let codes = (-20..=20).map(f64::from);
+        let weighted = codes.map(|code| (code, law.cdf(code + 0.5) - law.cdf(code - 0.5)));
+        let (mean, square) = weighted.fold((0.0, 0.0), |(mean, square), (code, part)| {
+            (mean + part * code, square + part * code * code)
+        });
+        (mean, square - mean * mean)
+    }
+
+    #[test]
+    fn noise_behind_a_coarse_converter_departs_by_where_the_level_lies() {
+        for noise in [0.4_f64, 0.46, 0.5, 0.6] {
+            let departures = (0..200).map(|place| {
+                let level = f64::from(place) / 200.0;
+                let slope =
+                    (rounded(level + 1e-4, noise).0 - rounded(level - 1e-4, noise).0) / 2e-4;
+                let white = (noise * noise + 1.0 / 12.0).sqrt();
+                rounded(level, noise).1.sqrt() / slope / white - 1.0
+            });
+            let departures: Vec<f64> = departures.collect();
+            let largest = departures
+                .iter()
+                .fold(0.0, |most: f64, own| most.max(own.abs()));
+            let form = departure_by_level(noise);
+            assert!(
+                (largest / form - 1.0).abs() < 0.03,
+                "{noise}: {largest} {form}"
+            );
+            let square: f64 = departures.iter().map(|own| own * own).sum();
+            let scatter = (square / 200.0).sqrt() * std::f64::consts::SQRT_2;
+            assert!(
+                (scatter / form - 1.0).abs() < 0.02,
+                "{noise}: {scatter} {form}"
+            );
+        }
     }
 }

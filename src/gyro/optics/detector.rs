@@ -145,6 +145,15 @@ impl Detector {
             .a2_per_hz(self.bias_current_a, self.dark_current_a)
     }
 
+    /// Noise of one sample before it is converted, steps of the converter; none of a converter without steps.
+    #[must_use]
+    pub fn noise_steps(&self, transit_time_s: f64) -> Option<f64> {
+        let mean_a2 = self.half_period_variance_a2(self.noise_a2_per_hz(), transit_time_s);
+        let sample_a = (self.samples_per_half_period * mean_a2).sqrt();
+        let step_a = self.converter_step_v / self.transimpedance_v_per_a;
+        (step_a > 0.0).then(|| sample_a / step_a)
+    }
+
     /// Variance of the mean current of one half period, all sources together, A^2.
     ///
     /// Phase noise counts through the slope at the bias point, as the linear loop sees it.

@@ -123,6 +123,7 @@ mod tests {
         Words {
             autocovariance,
             mean_deg_per_h: 0.0,
+            walk_scatter: 0.0,
             slow_deviation_deg_per_h: 0.0,
             sine: None,
             period_s: 0.01,

@@ -28,6 +28,8 @@ pub struct Words {
     pub autocovariance: Vec<f64>,
     /// Their mean, deg/h.
     pub mean_deg_per_h: f64,
+    /// Relative standard deviation of their angle random walk over what its closed form leaves open.
+    pub walk_scatter: f64,
     /// Standard deviation of the mean of their slow noise over a record, deg/h.
     pub slow_deviation_deg_per_h: f64,
     /// A sine that they hold.
@@ -164,7 +166,7 @@ impl ChannelTheory {
         let gain = self.gain_over_record(words).deviation / self.dc_gain.abs();
         ExpectedFigure {
             value,
-            deviation: value * fit.hypot(gain),
+            deviation: value * fit.hypot(gain).hypot(words.walk_scatter),
         }
     }
 
