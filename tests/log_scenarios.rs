@@ -223,6 +223,17 @@ fn what_is_wrong_with_a_scenario_of_a_log_is_said_before_it_runs() {
         "no truth",
         format!("{LOG}{}", gate("raw.mean_error_deg_per_h", "max = 1.0")),
     );
+    for value in [
+        "rows = \"1-60\"",
+        "unit = \"deg/w\"",
+        "motion = \"swung\"",
+        "dtype = \"i9\"",
+    ] {
+        refuse(
+            "a value that its key does not know",
+            format!("{LOG}{value}\n"),
+        );
+    }
     refuse("a swing too fast", format!("{LOG}motion = \"swing:30\"\n"));
     transcript.check();
 }

@@ -123,12 +123,8 @@ enum KeyError {
     Unknown(String),
     #[error(transparent)]
     Value(#[from] Fault),
-    #[error("{shown} = {value}: {why}")]
-    Spelling {
-        shown: String,
-        value: String,
-        why: serde::de::value::Error,
-    },
+    #[error(transparent)]
+    Spelling(#[from] SpellingError),
 }
 
 /// Checks one value of the table; `shown` is what the user calls its key.
@@ -138,9 +134,23 @@ fn check(name: &str, shown: &str, node: &Node) -> Result<(), KeyError> {
         return Err(KeyError::Unknown(unknown_in_table(shown, name, known)));
     };
     check_leaf(key, shown, node)?;
+    Ok(check_spelling(name, shown, node)?)
+}
+
+/// A value that its key does not know.
+#[derive(Debug, thiserror::Error)]
+#[error("{shown} = {value}: {why}")]
+pub(super) struct SpellingError {
+    shown: String,
+    value: String,
+    why: serde::de::value::Error,
+}
+
+/// Checks that the key of the table knows a value, as one of its words or in its form.
+pub(super) fn check_spelling(name: &str, shown: &str, node: &Node) -> Result<(), SpellingError> {
     let alone = Table::from([(name.to_owned(), node.clone())]);
     let read = from_table::<LogFormat>(&alone);
-    read.map(|_| ()).map_err(|why| KeyError::Spelling {
+    read.map(|_| ()).map_err(|why| SpellingError {
         shown: shown.to_owned(),
         value: excerpt(&node.value.to_toml()).to_string(),
         why,
