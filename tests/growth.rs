@@ -1,5 +1,5 @@
-//! Time and memory of `check` on long inputs, and memory of the files of a suite: held by their growth,
-//! which no slow machine changes.
+//! Time and memory of `check` and `plan` on long inputs, and memory of the files of a
+//! suite: held by their growth, which no slow machine changes.
 #![cfg(target_os = "linux")]
 
 use std::fmt::Write as _;
@@ -129,6 +129,48 @@ fn points_of_a_sweep_cost_as_much_as_their_number() {
     write(folder.path(), "small.toml", &sweep(1000));
     write(folder.path(), "large.toml", &sweep(10_000));
     assert_growth(folder.path(), "small.toml", "large.toml");
+}
+
+/// Largest memory of the program with some arguments, kB.
+fn memory_kb(folder: &Path, arguments: &[&str]) -> u64 {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_fogbench"));
+    cost_of(program.args(arguments).current_dir(folder)).memory_kb
+}
+
+#[test]
+fn a_plan_takes_300_bytes_for_a_run() {
+    const POINTS: usize = 1000;
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let seeds: Vec<String> = (0..POINTS).map(|seed| seed.to_string()).collect();
+    for (name, files) in [("small", 2), ("large", 20)] {
+        for index in 0..files {
+            let text = format!(
+                "schema = 1\nname = \"s{index}\"\nduration_s = 0.1\nfidelity = \"rate\"\n\
+                 [matrix]\nseed = [{}]\n",
+                seeds.join(", ")
+            );
+            write(folder.path(), &format!("{name}/s{index}.toml"), &text);
+        }
+    }
+    let of = |name| {
+        memory_kb(
+            folder.path(),
+            &["plan", name, "-o", &format!("{name}.plan")],
+        )
+    };
+    let (small_kb, large_kb) = (of("small"), of("large"));
+    let runs = |name: &str| {
+        let plan = fs::read_to_string(folder.path().join(format!("{name}.plan")));
+        let plan = plan.expect("a plan");
+        plan.lines().filter(|line| line.ends_with("\tall")).count()
+    };
+    let more = runs("large") - runs("small");
+    assert_eq!(more, 18 * POINTS);
+    let bytes = large_kb.saturating_sub(small_kb) * 1024 / more as u64;
+    assert!(
+        bytes <= 300,
+        "{bytes} bytes a run: {small_kb} kB, {large_kb} kB"
+    );
 }
 
 #[test]

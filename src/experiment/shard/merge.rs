@@ -76,7 +76,7 @@ fn parts(list: &RunList, gathered: &Gathered) -> Vec<Vec<Part>> {
     }
     let mut of_runs: Vec<Vec<Part>> = vec![Vec::new(); list.runs()];
     for (unit, part) in list.units.iter().zip(of_units) {
-        of_runs[unit.run].push(part);
+        of_runs[unit.run()].push(part);
     }
     of_runs
 }
