@@ -1,4 +1,4 @@
-//! Time and memory of `check` and `plan` on long inputs, and memory of the files of a
+//! Time and memory of `check` and `plan` on long inputs, of `merge` on many repeats, and memory of the files of a
 //! suite: held by their growth, which no slow machine changes.
 #![cfg(target_os = "linux")]
 
@@ -170,6 +170,35 @@ fn a_plan_takes_300_bytes_for_a_run() {
     assert!(
         bytes <= 300,
         "{bytes} bytes a run: {small_kb} kB, {large_kb} kB"
+    );
+}
+
+#[test]
+fn a_merge_takes_10_kb_for_a_repeat() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let of = |repeats: u32| {
+        let name = format!("r{repeats}");
+        let text = format!(
+            "schema = 1\nname = \"{name}\"\nduration_s = 0.1\nwarm_up_s = 0.05\nfidelity = \"rate\"\n\
+             repeats = {repeats}\n"
+        );
+        write(folder.path(), &format!("{name}/s.toml"), &text);
+        let shards = format!("{name}-shards");
+        memory_kb(
+            folder.path(),
+            &["run", &name, "--shard", "1/1", "-o", &shards],
+        );
+        let merged = format!("{name}-merged");
+        let memory_kb = memory_kb(folder.path(), &["merge", &shards, "-o", &merged]);
+        let runs = folder.path().join(format!("{merged}/{name}/runs.csv"));
+        let runs = fs::read_to_string(runs).expect("a table of the repeats");
+        assert_eq!(runs.lines().count(), repeats as usize + 1, "{runs}");
+        memory_kb
+    };
+    let (small_kb, large_kb) = (of(100), of(1000));
+    assert!(
+        large_kb.saturating_sub(small_kb) <= 900 * 10,
+        "{small_kb} kB of 100 repeats, {large_kb} kB of 1000"
     );
 }
 
