@@ -1,5 +1,5 @@
-//! Time and memory of `check` on long inputs, and memory of the files of a suite: held by their growth,
-//! which no slow machine changes.
+//! Time and memory of `check` and `plan` on long inputs, of `merge` on many repeats, and memory of the files of a
+//! suite: held by their growth, which no slow machine changes.
 #![cfg(target_os = "linux")]
 
 use std::fmt::Write as _;
@@ -129,6 +129,77 @@ fn points_of_a_sweep_cost_as_much_as_their_number() {
     write(folder.path(), "small.toml", &sweep(1000));
     write(folder.path(), "large.toml", &sweep(10_000));
     assert_growth(folder.path(), "small.toml", "large.toml");
+}
+
+/// Largest memory of the program with some arguments, kB.
+fn memory_kb(folder: &Path, arguments: &[&str]) -> u64 {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_fogbench"));
+    cost_of(program.args(arguments).current_dir(folder)).memory_kb
+}
+
+#[test]
+fn a_plan_takes_300_bytes_for_a_run() {
+    const POINTS: usize = 1000;
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let seeds: Vec<String> = (0..POINTS).map(|seed| seed.to_string()).collect();
+    for (name, files) in [("small", 2), ("large", 20)] {
+        for index in 0..files {
+            let text = format!(
+                "schema = 1\nname = \"s{index}\"\nduration_s = 0.1\nfidelity = \"rate\"\n\
+                 [matrix]\nseed = [{}]\n",
+                seeds.join(", ")
+            );
+            write(folder.path(), &format!("{name}/s{index}.toml"), &text);
+        }
+    }
+    let of = |name| {
+        memory_kb(
+            folder.path(),
+            &["plan", name, "-o", &format!("{name}.plan")],
+        )
+    };
+    let (small_kb, large_kb) = (of("small"), of("large"));
+    let runs = |name: &str| {
+        let plan = fs::read_to_string(folder.path().join(format!("{name}.plan")));
+        let plan = plan.expect("a plan");
+        plan.lines().filter(|line| line.ends_with("\tall")).count()
+    };
+    let more = runs("large") - runs("small");
+    assert_eq!(more, 18 * POINTS);
+    let bytes = large_kb.saturating_sub(small_kb) * 1024 / more as u64;
+    assert!(
+        bytes <= 300,
+        "{bytes} bytes a run: {small_kb} kB, {large_kb} kB"
+    );
+}
+
+#[test]
+fn a_merge_takes_10_kb_for_a_repeat() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let of = |repeats: u32| {
+        let name = format!("r{repeats}");
+        let text = format!(
+            "schema = 1\nname = \"{name}\"\nduration_s = 0.1\nwarm_up_s = 0.05\nfidelity = \"rate\"\n\
+             repeats = {repeats}\n"
+        );
+        write(folder.path(), &format!("{name}/s.toml"), &text);
+        let shards = format!("{name}-shards");
+        memory_kb(
+            folder.path(),
+            &["run", &name, "--shard", "1/1", "-o", &shards],
+        );
+        let merged = format!("{name}-merged");
+        let memory_kb = memory_kb(folder.path(), &["merge", &shards, "-o", &merged]);
+        let runs = folder.path().join(format!("{merged}/{name}/runs.csv"));
+        let runs = fs::read_to_string(runs).expect("a table of the repeats");
+        assert_eq!(runs.lines().count(), repeats as usize + 1, "{runs}");
+        memory_kb
+    };
+    let (small_kb, large_kb) = (of(100), of(1000));
+    assert!(
+        large_kb.saturating_sub(small_kb) <= 900 * 10,
+        "{small_kb} kB of 100 repeats, {large_kb} kB of 1000"
+    );
 }
 
 #[test]

@@ -60,9 +60,9 @@ pub use run::{Progress, Run, RunError, Samples, UnknownName};
 pub use scenario::Scenario;
 #[cfg(feature = "report")]
 pub use shard::{
-    Damaged, GatherError, Gathered, PlanFile, PlanFileError, RunList, Selected, ShardError,
-    ShardHead, ShardObserver, ShardOptions, ShardOutcome, ShardStatus, estimated_s, merge_shards,
-    ranges_text, run_shard, shard_status,
+    Damaged, GatherError, Gathered, Listing, PlanFile, PlanFileError, RunList, Selected,
+    ShardError, ShardHead, ShardObserver, ShardOptions, ShardOutcome, ShardStatus, Wanted,
+    estimated_s, list_suite, merge_shards, ranges_text, run_shard, shard_status,
 };
 #[cfg(feature = "report")]
 pub use starter::{StarterGyro, starter_scenario};

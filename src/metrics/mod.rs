@@ -108,6 +108,7 @@ pub use noise::spectrum::{Spectrum, log_binned, segment_samples, welch};
 pub use noise::truth_response::known_motion;
 pub(crate) use pipeline::{FIXED_POINT_ONLY, OVERFLOWS};
 pub use pool::aggregate::aggregate;
+pub use pool::pooling::Pooling;
 pub use pool::repeatability::repeats_lack;
 pub use pool::sensitivity::{ConditionPoint, change_divisor, largest_change_per_unit};
 pub use quality::examine::Examination;

@@ -80,6 +80,8 @@ pub use read::files::temperature_source::{
 pub use read::moved::{Movable, NotMovable};
 pub use read::purpose::Purpose;
 pub(crate) use read::resolve::UnsoundReading;
+#[cfg(feature = "report")]
+pub(crate) use read::resolved::run_folder;
 pub use read::resolved::{InputFile, Resolved, SweepPoint};
 pub(crate) use read::suite::{Reading, read_suite};
 pub use read::suite::{load_base_or_scenario, load_suite, visit_suite};

@@ -1,7 +1,7 @@
 //! A file that stands alone, where the user asked for it.
 
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::{Foreign, StoreError};
@@ -70,9 +70,20 @@ impl SingleFile<'_> {
     /// # Errors
     /// As [`SingleFile::check`].
     pub fn write(&self, text: &str) -> Result<(), StoreError> {
+        self.write_by(&|out| out.write_all(text.as_bytes()))
+    }
+
+    /// Writes the file whole or not at all, piece by piece.
+    ///
+    /// # Errors
+    /// As [`SingleFile::check`].
+    pub fn write_by(
+        &self,
+        write: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), StoreError> {
         self.check()?;
         let beside = self.beside();
-        let written = self.put(&beside, text);
+        let written = self.put(&beside, write);
         if written.is_err() {
             // The failure is what counts.
             let _ = fs::remove_file(&beside);
@@ -80,10 +91,17 @@ impl SingleFile<'_> {
         written.map_err(StoreError::at(self.path))
     }
 
-    fn put(&self, beside: &Path, text: &str) -> io::Result<()> {
-        let mut file = plain_file().write(true).create_new(true).open(beside)?;
-        file.write_all(text.as_bytes())?;
+    fn put(
+        &self,
+        beside: &Path,
+        write: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let file = plain_file().write(true).create_new(true).open(beside)?;
+        let mut out = BufWriter::new(file);
+        write(&mut out)?;
+        let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
+        drop(file);
         if stands(self.path)? {
             fs::rename(beside, self.path)?;
         } else {

@@ -12,4 +12,6 @@ mod survey;
 pub use checked::Plan;
 pub(crate) use suite::gather_plans;
 pub use suite::plan_suite;
+#[cfg(feature = "report")]
+pub(crate) use survey::{Gather, survey};
 pub use survey::{Sound, check_suite};

@@ -37,35 +37,63 @@ impl From<&Plan> for Sound {
     }
 }
 
+/// What is kept of the plans of a suite that is not held in memory.
+pub(crate) trait Gather {
+    /// Takes one more plan; they come in the order of the files.
+    fn take(&mut self, plan: Plan);
+}
+
+impl Gather for Vec<Sound> {
+    fn take(&mut self, plan: Plan) {
+        self.push(Sound::from(&plan));
+    }
+}
+
 /// Checks everything under `paths` as [`plan_suite`] does, without holding the plans in memory.
 ///
 /// # Errors
 /// As [`plan_suite`].
 pub fn check_suite(paths: &[PathBuf], sets: &[String]) -> Result<Vec<Sound>, Vec<ScenarioError>> {
-    let mut sound = Vec::new();
+    let mut sound: Vec<Sound> = survey(paths, sets, &Vec::new)?;
+    sound.sort_by(|one, other| one.folder.cmp(&other.folder));
+    Ok(sound)
+}
+
+/// What `gather` keeps of everything under `paths`, checked as [`plan_suite`] does. Plans of a suite with
+/// tables are held in memory meanwhile: these are checked against all of them.
+///
+/// # Errors
+/// As [`plan_suite`].
+pub(crate) fn survey<G: Gather>(
+    paths: &[PathBuf],
+    sets: &[String],
+    gather: &dyn Fn() -> G,
+) -> Result<G, Vec<ScenarioError>> {
+    let mut gathered = gather();
     let mut kept = Vec::new();
-    let mut has_tables = false;
+    let (mut has_tables, mut is_streamed) = (false, false);
     let errors = visit_plans(&|take| read_suite(paths, sets, take), &mut |plan| {
         let scenario = &plan.resolved().scenario;
         has_tables |= !scenario.comparisons.is_empty() || !scenario.comparison_rows.is_empty();
         if has_tables {
             kept.push(plan);
         } else {
-            sound.push(Sound::from(&plan));
+            is_streamed = true;
+            gathered.take(plan);
         }
     });
     if has_tables {
-        // A table over several scenarios is checked against all of them.
-        let plans = if sound.is_empty() {
-            compared(kept, errors)?
-        } else {
+        let plans = if is_streamed {
             plan_suite(paths, sets)?
+        } else {
+            compared(kept, errors)?
         };
-        return Ok(plans.iter().map(Sound::from).collect());
+        let mut all = gather();
+        plans.into_iter().for_each(|plan| all.take(plan));
+        return Ok(all);
     }
-    sound.sort_by(|one, other| one.folder.cmp(&other.folder));
     if errors.is_empty() {
-        Ok(sound)
+        Ok(gathered)
     } else {
         Err(in_order(errors))
     }

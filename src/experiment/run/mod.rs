@@ -12,6 +12,7 @@ mod progress;
 mod ranges;
 mod rate_twins;
 mod records;
+mod repeat_pool;
 mod results;
 mod simulate;
 mod theory;
@@ -24,9 +25,11 @@ pub(crate) use motion::{motion, motion_extremes, rate_deg_per_h_max};
 pub use progress::Progress;
 pub(crate) use progress::{Unfinished, unless_stopped};
 #[cfg(feature = "report")]
-pub(crate) use ranges::{Repeat, pool, run_range};
+pub(crate) use ranges::run_range;
 pub(crate) use rate_twins::{RATES_DEG_PER_S, RateTwins, rate_gain};
 pub(crate) use records::{RecordLength, count, sample_period_s, stamp_s};
+#[cfg(feature = "report")]
+pub(crate) use repeat_pool::{Repeat, RepeatPool};
 pub(crate) use results::{Results, run_plan};
 #[cfg(feature = "report")]
 pub(crate) use results::{notes, verdicts};

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::measure::{Channels, measure_repeat};
 use super::progress::{Progress, Unfinished};
 use super::records::{RecordLength, count};
+use super::repeat_pool::{Repeat, RepeatPool, keep_finite};
 use super::simulate::{Faults, Simulation, simulate};
 use super::theory::theory;
 use crate::experiment::campaign;
@@ -14,7 +15,6 @@ use crate::experiment::outside;
 use crate::experiment::pipeline_metrics;
 use crate::experiment::plan::Plan;
 use crate::gate::{Verdict, judge};
-use crate::metrics::{ChannelMetrics, aggregate};
 use crate::signal::{CalibrationSheet, CompensationSheet, TheoryCurve};
 
 /// What a run comes to.
@@ -108,6 +108,9 @@ fn mean_true_rates(plan: &Plan, simulation: &Simulation) -> [f64; 3] {
     means
 }
 
+/// Repeats that a thread runs before those of all are pooled.
+const REPEATS_TOGETHER: usize = 64;
+
 /// What the repeats of one run come to.
 struct Repeats {
     /// Of the first.
@@ -129,25 +132,36 @@ fn run_repeats(plan: &Plan, progress: &dyn Progress) -> Result<Repeats, Unfinish
         .transpose()?;
     let known = parameters.as_ref();
     let (simulation, first, sheet) = run_repeat(plan, 0, known, progress)?;
-    let others: Vec<(Faults, Channels, Option<CalibrationSheet>)> =
-        (1..plan.resolved().scenario.repeats)
+    let mut sheets = Vec::from_iter(sheet);
+    let mut pool = RepeatPool::default();
+    pool.add(Repeat {
+        faults: simulation.faults,
+        channels: first,
+    });
+    let repeats = plan.resolved().scenario.repeats;
+    // Some at a time, so that of many repeats no more wait to be pooled in their order.
+    let together = u32::try_from(REPEATS_TOGETHER * rayon::current_num_threads());
+    let together = together.unwrap_or(u32::MAX);
+    for begin in (1..repeats).step_by(together as usize) {
+        let others = begin..repeats.min(begin.saturating_add(together));
+        let others: Vec<(Repeat, Option<CalibrationSheet>)> = others
             .into_par_iter()
             .with_max_len(1)
             .map(|repeat| {
-                run_repeat(plan, repeat, known, progress)
-                    .map(|(simulation, channels, sheet)| (simulation.faults, channels, sheet))
+                let (simulation, channels, sheet) = run_repeat(plan, repeat, known, progress)?;
+                let faults = simulation.faults;
+                Ok((Repeat { faults, channels }, sheet))
             })
-            .collect::<Result<_, _>>()?;
-    let mut faults = simulation.faults;
-    let (mut channels, mut sheets) = (Vec::new(), Vec::from_iter(sheet));
-    for (more, other, sheet) in others {
-        faults = faults.plus(more);
-        channels.push(other);
-        sheets.extend(sheet);
+            .collect::<Result<_, Unfinished>>()?;
+        for (repeat, sheet) in others {
+            pool.add(repeat);
+            sheets.extend(sheet);
+        }
     }
+    let (faults, channels) = pool.pooled().unwrap_or_default();
     Ok(Repeats {
         simulation,
-        channels: combine(first, channels),
+        channels,
         faults,
         calibration: campaign::ranked(sheets),
         parameters,
@@ -171,33 +185,4 @@ pub(super) fn run_repeat(
     channels.extend(sheet.iter().flat_map(campaign::estimate_channels));
     keep_finite(&mut channels);
     Ok((simulation, channels, sheet))
-}
-
-/// One table from the tables of all repeats; a channel that failed once has failed.
-pub(super) fn combine(first: Channels, others: Vec<Channels>) -> Channels {
-    if others.is_empty() {
-        return first;
-    }
-    let mut repeats = vec![first];
-    repeats.extend(others);
-    let names: Vec<String> = repeats[0].iter().map(|(name, _)| name.clone()).collect();
-    let combined = names.into_iter().enumerate().map(|(index, name)| {
-        let tables: Vec<ChannelMetrics> = repeats
-            .iter()
-            .map(|channels| channels[index].1.clone())
-            .collect();
-        let failed = tables.iter().find(|table| table.error.is_some());
-        let table = failed.cloned().unwrap_or_else(|| aggregate(&tables));
-        (name, table)
-    });
-    let mut combined = combined.collect();
-    keep_finite(&mut combined);
-    combined
-}
-
-/// Leaves only finite numbers in the tables; see [`ChannelMetrics::keep_finite`].
-fn keep_finite(channels: &mut Channels) {
-    for (_, metrics) in channels {
-        metrics.keep_finite();
-    }
 }

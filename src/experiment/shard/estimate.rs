@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
+
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{Cut, RecordLength, Unfinished, allan_options, count, simulate};
 use crate::experiment::suite::pool;
@@ -18,37 +20,61 @@ const BUDGET: Duration = Duration::from_secs(2);
 /// CPU seconds of one core that some plans will take, programs of the user's not counted.
 #[must_use]
 pub fn estimated_s(plans: &[Plan]) -> f64 {
-    // On one thread: the seconds are those of a core.
-    match pool(1) {
-        Ok(pool) => pool.install(|| of_plans(plans)),
-        Err(_) => of_plans(plans),
-    }
+    let mut estimate = Estimate::default();
+    plans.iter().for_each(|plan| estimate.add(plan));
+    estimate.seconds()
 }
 
-fn of_plans(plans: &[Plan]) -> f64 {
-    let began = Instant::now();
-    let mut known: BTreeMap<&str, f64> = BTreeMap::new();
-    let (mut total_s, mut cost, mut unmeasured) = (0.0, 0.0, 0.0);
-    for plan in plans {
+/// CPU seconds of one core for plans that are seen one after the other.
+#[derive(Default)]
+pub(super) struct Estimate {
+    /// Seconds for a word by scenario; none of one that could not be measured.
+    of_word: BTreeMap<String, Option<f64>>,
+    /// One thread, so that the seconds are those of a core.
+    thread: Option<ThreadPool>,
+    measuring: Duration,
+    total_s: f64,
+    cost: f64,
+    unmeasured_cost: f64,
+}
+
+impl Estimate {
+    /// Takes in one more plan, and measures the first of a scenario.
+    pub(super) fn add(&mut self, plan: &Plan) {
         let name = plan.resolved().scenario.name.as_str();
-        if !known.contains_key(name)
-            && began.elapsed() < BUDGET
-            && let Ok(word_s) = of_word(plan)
-        {
-            known.insert(name, word_s);
+        if !self.of_word.contains_key(name) && self.measuring < BUDGET {
+            let began = Instant::now();
+            let word_s = self.measure(plan);
+            self.measuring += began.elapsed();
+            self.of_word.insert(name.to_owned(), word_s);
         }
-        match known.get(name) {
+        match self.of_word.get(name).copied().flatten() {
             Some(word_s) => {
-                total_s += word_s * words(plan);
-                cost += plan.cost();
+                self.total_s += word_s * words(plan);
+                self.cost += plan.cost();
             }
-            None => unmeasured += plan.cost(),
+            None => self.unmeasured_cost += plan.cost(),
         }
     }
-    if cost > 0.0 {
-        total_s * (1.0 + unmeasured / cost)
-    } else {
-        total_s
+
+    fn measure(&mut self, plan: &Plan) -> Option<f64> {
+        if self.thread.is_none() {
+            self.thread = pool(1).ok();
+        }
+        let measured = match &self.thread {
+            Some(thread) => thread.install(|| of_word(plan)),
+            None => of_word(plan),
+        };
+        measured.ok()
+    }
+
+    /// What all of them will take.
+    pub(super) fn seconds(&self) -> f64 {
+        if self.cost > 0.0 {
+            self.total_s * (1.0 + self.unmeasured_cost / self.cost)
+        } else {
+            self.total_s
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use super::list::RunList;
 use super::result::{FirstRepeat, UnitResult};
 use crate::comparison::Layout;
 use crate::experiment::plan::Plan;
-use crate::experiment::run::{RecordLength, Repeat, notes, pool as pool_repeats, theory, verdicts};
+use crate::experiment::run::{RecordLength, RepeatPool, notes, theory, verdicts};
 use crate::experiment::suite::{
     Ledger, Observer, Resume, Suite, SuiteError, SuiteOptions, SuiteOutcome, SuiteOutput, conduct,
     enter_failure, enter_files, enter_report, enter_unwritten, failed, layout, panic_text, pool,
@@ -76,7 +76,7 @@ fn parts(list: &RunList, gathered: &Gathered) -> Vec<Vec<Part>> {
     }
     let mut of_runs: Vec<Vec<Part>> = vec![Vec::new(); list.runs()];
     for (unit, part) in list.units.iter().zip(of_units) {
-        of_runs[unit.run].push(part);
+        of_runs[unit.run()].push(part);
     }
     of_runs
 }
@@ -121,7 +121,7 @@ impl Merger<'_> {
         parts: &[(usize, (u64, usize))],
     ) -> Result<Option<String>, StoreError> {
         let plan = &self.plans[run];
-        let (mut repeats, mut first) = (Vec::new(), None);
+        let (mut repeats, mut first) = (RepeatPool::default(), None);
         for (file, at) in parts {
             let entry = match self.gathered.files[*file].entry(*at) {
                 Ok(entry) => entry,
@@ -135,7 +135,7 @@ impl Merger<'_> {
                     return Ok(outcome.and_then(|outcome| outcome.error));
                 }
                 UnitResult::Repeats(part) => {
-                    repeats.extend(part.repeats);
+                    part.repeats.into_iter().for_each(|it| repeats.add(it));
                     first = first.or(part.first);
                 }
             }
@@ -146,15 +146,15 @@ impl Merger<'_> {
         self.enter_repeats(run, repeats, &first)
     }
 
-    /// Pools repeats in their order, and writes what comes of it; says why nothing does.
+    /// Writes what comes of pooled repeats; says why nothing does.
     fn enter_repeats(
         &self,
         run: usize,
-        repeats: Vec<Repeat>,
+        repeats: RepeatPool,
         first: &FirstRepeat,
     ) -> Result<Option<String>, StoreError> {
         let plan = &self.plans[run];
-        let Some((faults, channels)) = pool_repeats(repeats) else {
+        let Some((faults, channels)) = repeats.pooled() else {
             return Ok(Some("its shards hold no repeat".to_owned()));
         };
         let theory = match theory(&plan.resolved().scenario) {

@@ -1,5 +1,8 @@
 //! The file of a plan: what was selected, the numbered list of what there is to run, and in how many shards.
 
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+
 use super::file::Selected;
 use super::list::RunList;
 use crate::experiment::build::{BUILD, VERSION};
@@ -38,43 +41,48 @@ pub enum PlanFileError {
 }
 
 impl PlanFile {
-    /// The plan of a list.
-    #[must_use]
-    pub fn new(list: &RunList, shards: u32, selected: Selected) -> Self {
-        Self {
-            shards,
-            selected,
-            version: VERSION.to_owned(),
-            list: list.lines().collect(),
-        }
-    }
-
-    /// The text of the file.
+    /// Writes the file of a list.
     ///
     /// * `estimated_s`: CPU seconds that all of it will take.
-    #[must_use]
-    pub fn text(&self, list: &RunList, estimated_s: f64) -> String {
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write(
+        out: &mut dyn Write,
+        list: &RunList,
+        shards: u32,
+        selected: &Selected,
+        estimated_s: f64,
+    ) -> io::Result<()> {
         let texts = |texts: &[String]| {
             let texts = texts
                 .iter()
                 .map(|text| toml::Value::from(text.as_str()).to_string());
             texts.collect::<Vec<_>>().join(", ")
         };
-        format!(
+        write!(
+            out,
             "{BEGIN}: `fogbench run --plan FILE --shard i` runs part i of {shards}\n\
-             schema = 1\nversion = {version:?}\nbuild = {BUILD:?}\nplan = {digest:?}\nshards = {shards}\n\
+             schema = 1\nversion = {VERSION:?}\nbuild = {BUILD:?}\nplan = {digest:?}\nshards = {shards}\n\
              runs = {runs}\nunits = {units}\nestimated_s = {estimated_s:.1}\n\
-             paths = [{paths}]\nset = [{sets}]\nfilter = [{names}]\n{HEADING}{lines}",
-            shards = self.shards,
-            version = self.version,
+             paths = [{paths}]\nset = [{sets}]\nfilter = [{names}]\n{HEADING}",
             digest = list.digest(),
             runs = list.runs(),
             units = list.len(),
-            paths = texts(&self.selected.paths),
-            sets = texts(&self.selected.sets),
-            names = texts(&self.selected.names),
-            lines = self.list,
-        )
+            paths = texts(&selected.paths),
+            sets = texts(&selected.sets),
+            names = texts(&selected.names),
+        )?;
+        let mut lines = list.lines();
+        lines.try_for_each(|line| out.write_all(line.as_bytes()))
+    }
+
+    /// Folders of what a shard runs, from 1.
+    #[must_use]
+    pub fn folders_of(&self, shard: u32) -> BTreeSet<String> {
+        let lines = self.list.lines().skip(shard.saturating_sub(1) as usize);
+        let own = lines.step_by(self.shards as usize);
+        own.map(|line| folder(line).to_owned()).collect()
     }
 
     /// Whether a text is that of a plan.
@@ -87,15 +95,15 @@ impl PlanFile {
     ///
     /// # Errors
     /// [`PlanFileError`].
-    pub fn read(text: &str) -> Result<Self, PlanFileError> {
+    pub fn read(mut text: String) -> Result<Self, PlanFileError> {
         let no_plan = |what: &str| PlanFileError::NoPlan(what.to_owned());
-        if !Self::is_one(text) {
+        if !Self::is_one(&text) {
             return Err(no_plan(&format!("it does not begin with `{BEGIN}`")));
         }
-        let (head, list) = text
-            .split_once(HEADING)
-            .ok_or_else(|| no_plan("it holds no list"))?;
-        let head: toml::Table = head
+        let end = text.find(HEADING);
+        let end = end.ok_or_else(|| no_plan("it holds no list"))?;
+        let list = text.split_off(end + HEADING.len());
+        let head: toml::Table = text[..end]
             .parse()
             .map_err(|error: toml::de::Error| no_plan(error.message()))?;
         let word = |key: &str| {
@@ -121,7 +129,7 @@ impl PlanFile {
                 names: words("filter")?,
             },
             version: word("version")?,
-            list: list.to_owned(),
+            list,
         })
     }
 
@@ -134,14 +142,15 @@ impl PlanFile {
             return Err(PlanFileError::OtherVersion(self.version.clone()));
         }
         let mut planned = self.list.split_inclusive('\n');
-        let folder = |line: &str| line.split('\t').nth(2).unwrap_or_default().to_owned();
         for line in list.lines() {
             let what = match planned.next() {
                 Some(planned) if planned == line => continue,
                 Some(planned) if folder(planned) == folder(&line) => {
                     format!("{} has changed", folder(&line))
                 }
-                Some(planned) => format!("{} stands where {} was", folder(&line), folder(planned)),
+                Some(planned) => {
+                    format!("{} stands where {} was", folder(&line), folder(planned))
+                }
                 None => format!("{} is new", folder(&line)),
             };
             return Err(PlanFileError::OtherRuns(what));
@@ -153,4 +162,9 @@ impl PlanFile {
             )))
         })
     }
+}
+
+/// The folder that a line of a list names.
+fn folder(line: &str) -> &str {
+    line.split('\t').nth(2).unwrap_or_default()
 }

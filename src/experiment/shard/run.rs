@@ -1,5 +1,6 @@
 //! Running one shard into its own file.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -95,13 +96,13 @@ struct Work {
     failures: Vec<String>,
 }
 
-/// Runs what `head` says of `list`, continues what an earlier process of the same shard left, and puts the
-/// file in its place once it holds everything.
+/// Runs what `head` says of `list`, whose plans stand in `plans` by folder, continues what an earlier process of
+/// the same shard left, and puts the file in its place once it holds everything.
 ///
 /// # Errors
 /// [`ShardError`], before anything runs, or if the finished file cannot be put in its place.
 pub fn run_shard(
-    plans: &[Plan],
+    plans: &BTreeMap<String, Plan>,
     list: &RunList,
     head: &ShardHead,
     options: &ShardOptions,
@@ -119,8 +120,9 @@ pub fn run_shard(
     let before = work.done.len();
     let mut left: Vec<usize> = units.clone();
     left.retain(|unit| !work.done.contains_key(unit));
-    let cost = |unit: &usize| plans[list.units[*unit].run].cost();
-    left.sort_by(|one, other| cost(other).total_cmp(&cost(one)));
+    let cost = |unit: &usize| plans[&list.folder(list.units[*unit].run())].cost();
+    // Costs are never negative, so that their bits are ordered as they are.
+    left.sort_by_cached_key(|unit| Reverse(cost(unit).to_bits()));
     let work = Mutex::new(work);
     let outcome = |work: &Work| ShardOutcome {
         place: slot.place().to_owned(),
@@ -229,7 +231,7 @@ fn begin(slot: &ShardSlot, head: &ShardHead) -> Result<Work, StoreError> {
 
 /// What the threads of a shard share.
 struct Crew<'a> {
-    plans: &'a [Plan],
+    plans: &'a BTreeMap<String, Plan>,
     list: &'a RunList,
     units: usize,
     work: &'a Mutex<Work>,
@@ -243,7 +245,8 @@ impl Crew<'_> {
             return;
         }
         let unit = &self.list.units[index];
-        let plan = &self.plans[unit.run];
+        let folder = self.list.folder(unit.run());
+        let plan = &self.plans[&folder];
         let run = || run_unit(plan, unit, observer);
         let (result, has_failed) = match catch_unwind(AssertUnwindSafe(run)) {
             Ok(Ok(result)) => result,
@@ -251,7 +254,6 @@ impl Crew<'_> {
             Ok(Err(Unfinished::Failed(reason))) => (UnitResult::Failed(reason), true),
             Err(panic) => {
                 self.lock().is_broken = true;
-                let folder = &self.list.folders[unit.run];
                 observer.caution(&format!("{folder}: {}", panic_text(&*panic)));
                 return;
             }
@@ -272,7 +274,7 @@ impl Crew<'_> {
         }
         let done = work.done.len();
         drop(work);
-        observer.unit_done(&self.list.folders[unit.run], done, self.units);
+        observer.unit_done(&folder, done, self.units);
     }
 
     /// The work. Nothing that can panic runs while it is held.

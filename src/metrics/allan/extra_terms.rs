@@ -136,9 +136,10 @@ pub(crate) fn without_sine(points: &[AllanPoint], sine: Option<Sine>) -> Vec<All
 
 /// The sine of most of several records, with the mean of its squares as that of its amplitude; none
 /// where less than half of them have it.
-pub(crate) fn pooled_sine(repeats: &[ChannelMetrics]) -> Option<Sine> {
-    let found: Vec<Sine> = repeats.iter().filter_map(found_sine).collect();
-    if found.is_empty() || 2 * found.len() < repeats.len() {
+///
+/// * `found`: those of the records that have one; `records`: how many there are.
+pub(crate) fn pooled_sine(found: &[Sine], records: usize) -> Option<Sine> {
+    if found.is_empty() || 2 * found.len() < records {
         return None;
     }
     let periods: Vec<f64> = found.iter().map(|it| it.period_s.value).collect();
@@ -146,7 +147,7 @@ pub(crate) fn pooled_sine(repeats: &[ChannelMetrics]) -> Option<Sine> {
         .iter()
         .map(|it| it.amplitude_deg_per_h.value.powi(2))
         .sum();
-    let amplitude = (squares / repeats.len() as f64).sqrt();
+    let amplitude = (squares / records as f64).sqrt();
     let half = |it: &Estimate| (it.high - it.low) / 2.0;
     let pooled_half = |pick: fn(&Sine) -> &Estimate| {
         let sum: f64 = found.iter().map(|it| half(pick(it)).powi(2)).sum();

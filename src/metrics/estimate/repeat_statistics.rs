@@ -1,8 +1,7 @@
 //! A metric over the independent repeats of a run: every value, and what they have in common.
 
 use super::interval;
-use super::table::ChannelMetrics;
-use crate::metrics::key::metric::MetricKey;
+use super::value::Metric;
 
 /// One metric over the repeats.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,27 +27,24 @@ pub struct RepeatStatistics {
 
 impl RepeatStatistics {
     /// Statistics of one metric; `None` where fewer than two repeats have it.
+    ///
+    /// * `first`: that of the first repeat that has it; `values`: those of all, in order.
+    /// * `lacking`: indices of the others, in order.
     #[must_use]
-    pub fn of(repeats: &[ChannelMetrics], key: &MetricKey) -> Option<Self> {
-        let metrics: Vec<_> = repeats
-            .iter()
-            .filter_map(|repeat| repeat.get(key))
-            .collect();
-        if metrics.len() < 2 {
+    pub fn of(first: &Metric, values: Vec<f64>, lacking: Vec<usize>) -> Option<Self> {
+        if values.len() < 2 {
             return None;
         }
-        let lacks = |index: &usize| repeats[*index].get(key).is_none();
-        let values: Vec<f64> = metrics.iter().map(|metric| metric.estimate.value).collect();
         let mean = interval::mean(&values);
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
         Some(Self {
-            unit: metrics[0].unit,
-            averaging_time_s: metrics[0].fields.get("averaging_time_s").copied(),
+            unit: first.unit,
+            averaging_time_s: first.fields.get("averaging_time_s").copied(),
             mean,
             standard_deviation: (squares / (values.len() - 1) as f64).sqrt(),
             minimum: values.iter().copied().fold(f64::INFINITY, f64::min),
             maximum: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            lacking: (0..repeats.len()).filter(lacks).collect(),
+            lacking,
             values,
         })
     }
@@ -92,20 +88,20 @@ impl RepeatStatistics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::catalogue::MEAN;
-    use crate::metrics::{Estimate, Metric};
+    use crate::metrics::Estimate;
 
-    fn repeat(value: f64) -> ChannelMetrics {
-        let mut channel = ChannelMetrics::default();
-        let metric = Metric::new(Estimate::exact(value), "deg/h");
-        channel.metrics.insert("mean_deg_per_h".to_owned(), metric);
-        channel
+    /// Statistics over repeats, some of which have no value.
+    fn of(repeats: &[Option<f64>]) -> Option<RepeatStatistics> {
+        let metric = Metric::new(Estimate::exact(0.0), "deg/h");
+        let lacks = |index: &usize| repeats[*index].is_none();
+        let lacking = (0..repeats.len()).filter(lacks).collect();
+        let values = repeats.iter().copied().flatten().collect();
+        RepeatStatistics::of(&metric, values, lacking)
     }
 
     #[test]
     fn known_answer_of_four_repeats() {
-        let repeats = [2.0, 4.0, 4.0, 6.0].map(repeat);
-        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("four values");
+        let statistics = of(&[2.0, 4.0, 4.0, 6.0].map(Some)).expect("four values");
         assert!((statistics.mean - 4.0).abs() < 1e-15);
         // Squares 4 + 0 + 0 + 4 over three.
         assert!((statistics.standard_deviation - (8.0_f64 / 3.0).sqrt()).abs() < 1e-15);
@@ -116,16 +112,14 @@ mod tests {
 
     #[test]
     fn one_repeat_has_no_statistics() {
-        assert!(RepeatStatistics::of(&[repeat(1.0)], &MEAN).is_none());
-        let lacking = [repeat(1.0), ChannelMetrics::default()];
-        assert!(RepeatStatistics::of(&lacking, &MEAN).is_none());
+        assert!(of(&[Some(1.0)]).is_none());
+        assert!(of(&[Some(1.0), None]).is_none());
     }
 
     #[test]
     fn a_repeat_that_lacks_the_metric_keeps_its_place() {
-        let none = ChannelMetrics::default;
-        let repeats = [none(), repeat(1.0), none(), repeat(3.0), none()];
-        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("two values");
+        let repeats = [None, Some(1.0), None, Some(3.0), None];
+        let statistics = of(&repeats).expect("two values");
         assert_eq!(statistics.repeats(), 5);
         let places: Vec<Option<f64>> = (0..6).map(|index| statistics.value_of(index)).collect();
         assert_eq!(places, [None, Some(1.0), None, Some(3.0), None, None]);
@@ -134,8 +128,8 @@ mod tests {
     #[test]
     fn known_answer_of_percentiles() {
         // numpy.percentile([15, 20, 35, 40, 50], [0, 5, 25, 40, 50, 75, 95, 100])
-        let repeats = [40.0, 15.0, 50.0, 20.0, 35.0].map(repeat);
-        let statistics = RepeatStatistics::of(&repeats, &MEAN).expect("five values");
+        let repeats = [40.0, 15.0, 50.0, 20.0, 35.0].map(Some);
+        let statistics = of(&repeats).expect("five values");
         for (percent, expected) in [
             (0.0, 15.0),
             (5.0, 16.0),

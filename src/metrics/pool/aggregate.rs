@@ -1,9 +1,8 @@
 //! Pooling of independent repeats of one channel.
 
-use std::collections::BTreeSet;
-
 use super::allan::pool_allan;
 use super::curves::pool_curves;
+use super::pooling::{MetricValues, Pooling, SCATTER_REPEATS_MIN};
 use super::repeatability::put_repeatability;
 use crate::metrics::catalogue::{find, repeated_metrics};
 use crate::metrics::estimate::interval;
@@ -13,10 +12,6 @@ use crate::metrics::estimate::table::{
 };
 use crate::metrics::estimate::value::{Estimate, Metric};
 use crate::metrics::key::metric::Pool;
-
-/// From this many repeats on, Student's t on their scatter gives the interval; below, the intervals
-/// of the repeats themselves say more.
-const SCATTER_REPEATS_MIN: usize = 6;
 
 /// Pools independent repeats of the same channel.
 ///
@@ -34,37 +29,41 @@ const SCATTER_REPEATS_MIN: usize = 6;
 /// deviations and spectra are averaged as powers, other curves as they are. If a repeat failed, the first failed one stands for the channel.
 #[must_use]
 pub fn aggregate(repeats: &[ChannelMetrics]) -> ChannelMetrics {
-    if let Some(failed) = repeats.iter().find(|repeat| repeat.error.is_some()) {
-        return failed.clone();
-    }
-    let mut pooled = ChannelMetrics::default();
-    let names: BTreeSet<&String> = repeats
-        .iter()
-        .flat_map(|repeat| repeat.metrics.keys())
-        .collect();
-    for name in names {
-        let metrics: Vec<&Metric> = repeats
-            .iter()
-            .filter_map(|repeat| repeat.metrics.get(name))
-            .collect();
-        pooled.metrics.insert(name.clone(), pool(name, &metrics));
-    }
-    for (name, reason) in repeats.iter().flat_map(|repeat| &repeat.unavailable) {
-        if !pooled.metrics.contains_key(name) {
-            pooled
-                .unavailable
-                .entry(name.clone())
-                .or_insert_with(|| reason.clone());
+    let mut pooling = Pooling::default();
+    repeats.iter().for_each(|repeat| pooling.add(repeat));
+    pooling.pooled()
+}
+
+impl Pooling {
+    /// What [`aggregate`] makes of the repeats that were taken in.
+    #[must_use]
+    pub fn pooled(mut self) -> ChannelMetrics {
+        if let Some(failed) = self.failed.take() {
+            return failed;
         }
+        let mut pooled = ChannelMetrics::default();
+        for (name, values) in &self.metrics {
+            pooled.metrics.insert(name.clone(), pool(name, values));
+        }
+        for (name, reason) in &self.unavailable {
+            if !pooled.metrics.contains_key(name) {
+                pooled.unavailable.insert(name.clone(), reason.clone());
+            }
+        }
+        put_repeatability(&self, &mut pooled);
+        pool_curves(&self, &mut pooled);
+        pool_allan(&self, &mut pooled);
+        for key in repeated_metrics() {
+            let Some(mut own) = self.metrics.remove(key.name) else {
+                continue;
+            };
+            let lacking = own.lacking(self.count);
+            if let Some(statistics) = RepeatStatistics::of(&own.first, own.values, lacking) {
+                pooled.repeats.insert(key.name.to_owned(), statistics);
+            }
+        }
+        pooled
     }
-    put_repeatability(repeats, &mut pooled);
-    pool_curves(repeats, &mut pooled);
-    pool_allan(repeats, &mut pooled);
-    pooled.repeats = repeated_metrics()
-        .into_iter()
-        .filter_map(|key| Some((key.name.to_owned(), RepeatStatistics::of(repeats, key)?)))
-        .collect();
-    pooled
 }
 
 /// Whether a metric is pooled by its squares.
@@ -73,22 +72,19 @@ fn is_root_mean_square(name: &str) -> bool {
 }
 
 /// Pools one metric over the repeats that have it.
-fn pool(name: &str, metrics: &[&Metric]) -> Metric {
-    let values: Vec<f64> = metrics.iter().map(|metric| metric.estimate.value).collect();
-    let freedoms: Option<Vec<f64>> = metrics
-        .iter()
-        .map(|metric| metric.fields.get(DEGREES_OF_FREEDOM).copied())
-        .collect();
-    let squares: Vec<f64> = values.iter().map(|value| value * value).collect();
-    let mut pooled = metrics[0].clone();
-    if metrics.len() > 1 {
-        pooled.estimate = match freedoms {
-            Some(freedoms) => {
-                let freedom = freedoms.iter().sum();
+fn pool(name: &str, own: &MetricValues) -> Metric {
+    let values = &own.values;
+    let count = values.len() as f64;
+    let mut pooled = own.first.clone();
+    if values.len() > 1 {
+        let squares = || -> Vec<f64> { values.iter().map(|value| value * value).collect() };
+        pooled.estimate = match own.freedom {
+            Some(freedom) => {
                 pooled.fields.insert(DEGREES_OF_FREEDOM, freedom);
-                interval::deviation(interval::mean(&squares).sqrt(), freedom)
+                interval::deviation(interval::mean(&squares()).sqrt(), freedom)
             }
             None if is_root_mean_square(name) => {
+                let squares = squares();
                 let square = interval::from_parts(interval::mean(&squares), &squares);
                 Estimate::with_interval(
                     square.value.sqrt(),
@@ -96,48 +92,24 @@ fn pool(name: &str, metrics: &[&Metric]) -> Metric {
                     square.high.sqrt(),
                 )
             }
-            None => pool_mean(&values, metrics),
+            None => pool_mean(own),
         };
     }
-    let expected: Option<Vec<f64>> = metrics
-        .iter()
-        .map(|metric| metric.fields.get(EXPECTED).map(|value| value * value))
-        .collect();
-    match expected {
-        Some(squares) => {
-            let square = interval::mean(&squares);
-            pooled.fields.insert(EXPECTED, square.sqrt());
-        }
-        None => {
-            pooled.fields.remove(EXPECTED);
-        }
-    }
-    let correlations = metrics
-        .iter()
-        .map(|metric| metric.fields.get(RAW_CORRELATION));
-    match correlations
-        .map(Option::<&f64>::copied)
-        .collect::<Option<Vec<f64>>>()
-    {
-        Some(correlations) => {
-            let mean = interval::mean(&correlations);
-            pooled.fields.insert(RAW_CORRELATION, mean);
-        }
-        None => {
-            pooled.fields.remove(RAW_CORRELATION);
-        }
-    }
-    pooled.fields.insert("repeats", metrics.len() as f64);
+    let mut settle = |field, value: Option<f64>| {
+        pooled.fields.remove(field);
+        pooled.fields.extend(value.map(|value| (field, value)));
+    };
+    let expected = own.expected_square.map(|sum| (sum / count).sqrt());
+    settle(EXPECTED, expected);
+    settle(RAW_CORRELATION, own.raw_correlation.map(|sum| sum / count));
+    pooled.fields.insert("repeats", count);
     pooled
 }
 
 /// Mean of the repeats with the interval described at [`aggregate`].
-fn pool_mean(values: &[f64], metrics: &[&Metric]) -> Estimate {
+fn pool_mean(own: &MetricValues) -> Estimate {
+    let (values, half_widths) = (&own.values, &own.half_widths);
     let mean = interval::mean(values);
-    let half_widths: Vec<f64> = metrics
-        .iter()
-        .map(|metric| (metric.estimate.high - metric.estimate.low) / 2.0)
-        .collect();
     if values.len() >= SCATTER_REPEATS_MIN || half_widths.iter().any(|&width| width <= 0.0) {
         return interval::from_parts(mean, values);
     }

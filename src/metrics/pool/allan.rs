@@ -1,15 +1,13 @@
 //! Pooling of the Allan curves over repeats, and the fit to the result.
 
-use super::curves::{columns, mean_of};
+use super::pooling::{Fits, Pooling};
 use crate::metrics::allan::curves::{
     ALLAN, ALLAN_FIT, COUNT, DEVIATION, ESTIMATOR, FITTED, FREEDOM, NOISE_ALPHA, NOISE_IDENTIFIED,
     TAU, columns_of, fitted_column, put_allan_words, put_fit_curve,
 };
 use crate::metrics::allan::entry::{FIT_METRICS, enter_fit};
 use crate::metrics::allan::extra_terms::{pooled_sine, without_sine};
-use crate::metrics::allan::noise_fit::{
-    ANGLE_RANDOM_WALK, FitRange, NoiseFit, Term, fit_pooled_noise,
-};
+use crate::metrics::allan::noise_fit::{ANGLE_RANDOM_WALK, NoiseFit, Term, fit_pooled_noise};
 use crate::metrics::allan::noise_identification::PowerLaw;
 use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
@@ -26,18 +24,18 @@ const MEANS: [&Column; 2] = [&COUNT, &NOISE_IDENTIFIED];
 
 /// The points of a curve with the mean variance of the repeats and the sum of their degrees of
 /// freedom; nothing unless all repeats have the curve with the same number of points.
-fn pooled_points(repeats: &[ChannelMetrics], curve: &CurveKey) -> Option<Vec<AllanPoint>> {
-    let tau = columns(repeats, curve, &TAU)?;
-    let variance = mean_of(&columns(repeats, curve, &DEVIATION)?, |value| value * value);
-    let freedom = mean_of(&columns(repeats, curve, &FREEDOM)?, std::convert::identity);
-    let differences = columns(repeats, curve, &COUNT)?;
+fn pooled_points(repeats: &Pooling, curve: &CurveKey) -> Option<Vec<AllanPoint>> {
+    let tau = repeats.first_of(curve, &TAU)?;
+    let variance = repeats.mean_of(curve, &DEVIATION)?;
+    let freedom = repeats.mean_of(curve, &FREEDOM)?;
+    let differences = repeats.first_of(curve, &COUNT)?;
     // The shortest averaging time is one sample.
-    let sample_period_s = tau[0].first().copied().unwrap_or(1.0);
-    let count = repeats.len() as f64;
-    let points = tau[0]
+    let sample_period_s = tau.first().copied().unwrap_or(1.0);
+    let count = repeats.count as f64;
+    let points = tau
         .iter()
         .zip(variance.iter().zip(&freedom))
-        .zip(differences[0])
+        .zip(differences)
         .map(|((&tau_s, (variance, freedom)), differences)| AllanPoint {
             tau_s,
             averaged_samples: interval::round_to_count(tau_s / sample_period_s),
@@ -49,28 +47,25 @@ fn pooled_points(repeats: &[ChannelMetrics], curve: &CurveKey) -> Option<Vec<All
 }
 
 /// Pools the Allan curves and fits the noise terms to the result.
-pub(crate) fn pool_allan(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+pub(crate) fn pool_allan(repeats: &Pooling, pooled: &mut ChannelMetrics) {
     let fit = pool_fit(repeats, pooled);
     pool_curve(repeats, fit.as_ref(), pooled);
 }
 
-fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
-    if repeats.iter().any(|repeat| !repeat.pulse_words.is_empty()) {
-        pool_pulses(repeats, pooled);
+fn pool_fit(repeats: &Pooling, pooled: &mut ChannelMetrics) -> Option<NoiseFit> {
+    let fits = &repeats.fits;
+    if !fits.pulse_words.is_empty() {
+        pool_pulses(fits, pooled);
         return None;
     }
     let points = pooled_points(repeats, &ALLAN_FIT)?;
-    let count = repeats.len() as f64;
-    let range = repeats.iter().find_map(|repeat| {
-        let sheet = repeat.noise_fit.as_ref()?;
-        Some(FitRange {
-            tau_min_s: sheet.number("tau_min_s")?,
-            tau_max_s: sheet.number("tau_max_s")?,
-        })
-    });
-    let sine = pooled_sine(repeats);
+    let count = repeats.count as f64;
+    let sine = pooled_sine(&fits.sines, repeats.count);
     let rest = without_sine(&points, sine);
-    let Some(Ok(fit)) = range.map(|range| fit_pooled_noise(&rest, range, count)) else {
+    let Some(Ok(fit)) = fits
+        .range
+        .map(|range| fit_pooled_noise(&rest, range, count))
+    else {
         put_fit_curve(&points, None, pooled);
         return None;
     };
@@ -103,18 +98,13 @@ fn pool_fit(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) -> Option<N
 
 /// Pools the terms of words that count pulses, each repeat of which was fitted to a curve of its own: the
 /// mean of the squares with Student's t on their scatter.
-fn pool_pulses(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+fn pool_pulses(fits: &Fits, pooled: &mut ChannelMetrics) {
     for key in FIT_METRICS {
-        let squares = repeats.iter().filter_map(|repeat| {
-            let sheet = repeat.noise_fit.as_ref()?;
-            let term = sheet.terms.get(key.name)?;
-            repeat.get(key).map(|_| term.square)
-        });
-        let squares: Vec<f64> = squares.collect();
+        let squares = fits.squares.get(key.name).map_or(&[][..], Vec::as_slice);
         if squares.len() < 2 || pooled.get(key).is_none() {
             continue;
         }
-        let square = interval::from_parts(interval::mean(&squares), &squares);
+        let square = interval::from_parts(interval::mean(squares), squares);
         let term = Term::new(
             square.value,
             0.0,
@@ -125,11 +115,7 @@ fn pool_pulses(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
             metric.fields.insert("repeats", squares.len() as f64);
         }
     }
-    let told = repeats.iter().flat_map(|repeat| &repeat.pulse_words);
-    for (key, words) in told {
-        let entry = pooled.pulse_words.entry(key.clone());
-        entry.or_insert_with(|| words.clone());
-    }
+    pooled.pulse_words.clone_from(&fits.pulse_words);
 }
 
 /// Replaces the mean of what the repeats' fits expect of the bias stability by what the fit to all of
@@ -161,32 +147,31 @@ fn expect_of_fit(fit: &NoiseFit, pooled: &mut ChannelMetrics) {
 }
 
 /// Pools the curve of the settings; the noise is the law nearest to the mean exponent.
-fn pool_curve(repeats: &[ChannelMetrics], fit: Option<&NoiseFit>, pooled: &mut ChannelMetrics) {
+fn pool_curve(repeats: &Pooling, fit: Option<&NoiseFit>, pooled: &mut ChannelMetrics) {
     let (Some(points), Some(alpha)) = (
         pooled_points(repeats, &ALLAN),
-        columns(repeats, &ALLAN, &NOISE_ALPHA),
+        repeats.mean_of(&ALLAN, &NOISE_ALPHA),
     ) else {
         return;
     };
     let mut curve = columns_of(&points);
-    for name in MEANS {
-        if let Some(found) = columns(repeats, &ALLAN, name) {
-            curve.push((name, mean_of(&found, std::convert::identity)));
-        }
+    for column in MEANS {
+        curve.extend(repeats.mean_of(&ALLAN, column).map(|mean| (column, mean)));
     }
-    let laws: Vec<PowerLaw> = mean_of(&alpha, std::convert::identity)
-        .into_iter()
-        .map(PowerLaw::nearest_of_all)
-        .collect();
+    let laws = alpha.into_iter().map(PowerLaw::nearest_of_all);
+    let laws: Vec<PowerLaw> = laws.collect();
     let exponents = laws.iter().map(|law| law.alpha().into());
     curve.push((&NOISE_ALPHA, exponents.collect()));
-    let had_fit = columns(repeats, &ALLAN, &FITTED).is_some();
+    let had_fit = repeats.first_of(&ALLAN, &FITTED).is_some();
     curve.extend(
         fit.filter(|_| had_fit)
             .map(|fit| fitted_column(&points, fit)),
     );
     pooled.put_curve(&ALLAN, curve);
-    let words = repeats.first().map(|one| one.words(&ALLAN, &ESTIMATOR));
+    let words = repeats
+        .first
+        .as_ref()
+        .map(|one| one.words(&ALLAN, &ESTIMATOR));
     let estimator = words.and_then(|words| words.first().copied());
     let names = laws.into_iter().map(PowerLaw::name).collect();
     put_allan_words(names, estimator.unwrap_or_default(), pooled);

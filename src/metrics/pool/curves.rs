@@ -1,11 +1,12 @@
 //! Pooling of curves over repeats.
 
+use super::pooling::Pooling;
 use crate::metrics::catalogue::known_curves;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::key::curve::{Column, CurveKey, CurvePool};
 
 /// Pools the curves but for the Allan curves, whose pooling fits the noise terms again.
-pub(crate) fn pool_curves(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+pub(crate) fn pool_curves(repeats: &Pooling, pooled: &mut ChannelMetrics) {
     for key in known_curves() {
         match key.pool {
             CurvePool::AllanVariance => {}
@@ -14,40 +15,15 @@ pub(crate) fn pool_curves(repeats: &[ChannelMetrics], pooled: &mut ChannelMetric
     }
 }
 
-/// Column of a curve in every repeat; `None` unless all have it in the same length.
-pub(crate) fn columns<'a>(
-    repeats: &'a [ChannelMetrics],
-    curve: &CurveKey,
-    column: &Column,
-) -> Option<Vec<&'a [f64]>> {
-    let found: Option<Vec<&[f64]>> = repeats
-        .iter()
-        .map(|repeat| column.get(repeat.curve(curve)?))
-        .collect();
-    found.filter(|all| !all.is_empty() && all.iter().all(|one| one.len() == all[0].len()))
-}
-
-/// Mean over the repeats of `transform(value)`, entry by entry.
-pub(crate) fn mean_of(columns: &[&[f64]], transform: fn(f64) -> f64) -> Vec<f64> {
-    (0..columns[0].len())
-        .map(|index| {
-            let sum: f64 = columns.iter().map(|column| transform(column[index])).sum();
-            sum / columns.len() as f64
-        })
-        .collect()
-}
-
 /// Averages the columns of a curve; the intervals of its points shrink with the root of the number of
 /// repeats. What powers go with is that of the first repeat. A curve that one repeat lacks, or has at other points, is left out.
-fn pool_points(key: &CurveKey, repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
-    let Some(first) = repeats.first().and_then(|repeat| repeat.curve(key)) else {
+fn pool_points(key: &CurveKey, repeats: &Pooling, pooled: &mut ChannelMetrics) {
+    let first = repeats.first.as_ref();
+    let Some(first) = first.and_then(|repeat| repeat.curve(key)) else {
         return;
     };
-    let shrink = 1.0 / (repeats.len() as f64).sqrt();
-    let mean = |column: &Column| {
-        let found = columns(repeats, key, column)?;
-        Some(mean_of(&found, std::convert::identity))
-    };
+    let shrink = 1.0 / (repeats.count as f64).sqrt();
+    let mean = |column: &Column| repeats.mean_of(key, column);
     let pool = |column: &&'static Column| {
         if key.pool == CurvePool::Power && key.columns.first() == Some(column) {
             return Some((*column, column.of(first).to_vec()));

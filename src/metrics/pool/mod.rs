@@ -3,5 +3,6 @@
 pub(super) mod aggregate;
 pub(super) mod allan;
 pub(super) mod curves;
+pub(super) mod pooling;
 pub(super) mod repeatability;
 pub(super) mod sensitivity;

@@ -1,5 +1,6 @@
 //! Repeatability: the scatter of a metric over independent repeats, each a start of its own.
 
+use super::pooling::Pooling;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::{ChannelMetrics, DEGREES_OF_FREEDOM};
@@ -56,7 +57,7 @@ pub fn repeats_lack(key: &MetricKey, repeats: usize) -> Option<Unavailable> {
 /// them but for their number.
 ///
 /// Source: IEEE Std 952, repeatability; the interval is the chi-square one of a standard deviation.
-pub(crate) fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut ChannelMetrics) {
+pub(crate) fn put_repeatability(repeats: &Pooling, pooled: &mut ChannelMetrics) {
     for key in REPEATABILITIES {
         let (Pool::ScatterOf(source) | Pool::RelativeScatterOf(source)) = key.pool else {
             continue;
@@ -65,15 +66,11 @@ pub(crate) fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut Channel
         if pooled.why_unavailable(key) != single.as_ref().map(Unavailable::as_str) {
             continue;
         }
-        if let Some(reason) = repeats_lack(key, repeats.len()) {
+        if let Some(reason) = repeats_lack(key, repeats.count) {
             pooled.miss(key, reason);
             continue;
         }
-        let values: Option<Vec<f64>> = repeats
-            .iter()
-            .map(|repeat| Some(repeat.get(source)?.estimate.value))
-            .collect();
-        let Some(values) = values else {
+        let Some(values) = repeats.values_of_all(source) else {
             pooled.miss(key, format!("not every repeat has a {}", source.name));
             continue;
         };
@@ -84,7 +81,7 @@ pub(crate) fn put_repeatability(repeats: &[ChannelMetrics], pooled: &mut Channel
         let is_relative = matches!(key.pool, Pool::RelativeScatterOf(_));
         let scatter = match scale_factor_repeatability(&factors) {
             Some(ratio) if is_relative => ratio_to_ppm(ratio),
-            _ => interval::sample_variance(&values).sqrt(),
+            _ => interval::sample_variance(values).sqrt(),
         };
         let freedom = values.len() as f64 - 1.0;
         let fields = &mut pooled

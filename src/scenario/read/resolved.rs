@@ -40,6 +40,14 @@ impl SweepPoint {
     pub(in crate::scenario) const COUNT_MAX: usize = 10_000;
 }
 
+/// Folder of a run below the output folder, by the name of its scenario and its point of a sweep.
+pub(crate) fn run_folder(name: &str, point: Option<usize>) -> String {
+    match point {
+        None => name.to_owned(),
+        Some(index) => format!("{name}/{index:04}"),
+    }
+}
+
 /// One run, ready to be carried out.
 #[derive(Clone, Debug)]
 pub struct Resolved {
@@ -122,10 +130,10 @@ impl Resolved {
     /// Folder of the run below the output folder: `<name>`, or `<name>/<nnnn>` in a sweep.
     #[must_use]
     pub fn folder(&self) -> String {
-        match &self.sweep {
-            None => self.scenario.name.clone(),
-            Some(point) => format!("{}/{:04}", self.scenario.name, point.index),
-        }
+        run_folder(
+            &self.scenario.name,
+            self.sweep.as_ref().map(|point| point.index),
+        )
     }
 
     /// The resolved scenario in its canonical spelling: every key, defaults included.

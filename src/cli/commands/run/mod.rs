@@ -55,8 +55,13 @@ pub(super) fn without_gates(plans: &[Plan]) -> bool {
 }
 
 /// The right to start the programs that some plans name, where there are any.
-fn programs(plans: &[Plan], options: &RunOptions) -> Result<Option<Programs>, Exit> {
-    let programs = plans.iter().flat_map(|plan| program_files(plan.resolved()));
+fn programs<'a>(
+    plans: impl IntoIterator<Item = &'a Plan>,
+    options: &RunOptions,
+) -> Result<Option<Programs>, Exit> {
+    let programs = plans
+        .into_iter()
+        .flat_map(|plan| program_files(plan.resolved()));
     consent(programs, options.allow_programs)
 }
 

@@ -11,8 +11,8 @@ use crate::cli::terminal::exit::{Exit, io_failure};
 use crate::cli::terminal::signals::Interrupt;
 use crate::cli::terminal::{output, place};
 use crate::experiment::{
-    self, Plan, PlanFile, RunList, ShardError, ShardHead, ShardObserver, ShardOptions,
-    ShardOutcome, run_shard,
+    self, Listing, PlanFile, ShardError, ShardHead, ShardObserver, ShardOptions, ShardOutcome,
+    run_shard,
 };
 use crate::program::Programs;
 use crate::store::ProgramLog;
@@ -22,11 +22,11 @@ use crate::wording::printable;
 pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exit> {
     // Preemption may come at any moment, and nothing is lost by it.
     interrupt.defer_shard();
-    let (plans, list, head) = match asked(options) {
+    let (Listing { plans, list, .. }, head) = match asked(options) {
         Ok(asked) => asked,
         Err(exit) => return Ok(exit),
     };
-    let programs = match programs(&plans, options) {
+    let programs = match programs(plans.values(), options) {
         Ok(programs) => programs,
         Err(exit) => return Ok(exit),
     };
@@ -56,10 +56,11 @@ pub(super) fn run(options: &RunOptions, interrupt: &Interrupt) -> io::Result<Exi
     })
 }
 
-/// What is asked for: the plans, their list, and which part of it.
+/// What is asked for: the list of what there is to run with the plans of the part, and which part it is. Without
+/// a plan file all plans are kept, as it is not known before the end which run goes to which part.
 ///
 /// A refusal is printed before its exit code is returned.
-fn asked(options: &RunOptions) -> Result<(Vec<Plan>, RunList, ShardHead), Exit> {
+fn asked(options: &RunOptions) -> Result<(Listing, ShardHead), Exit> {
     let file = options.shard.plan.as_deref().map(plan_file).transpose()?;
     let planned = file.as_ref().map(|file| file.shards);
     let numbers = options
@@ -73,10 +74,11 @@ fn asked(options: &RunOptions) -> Result<(Vec<Plan>, RunList, ShardHead), Exit> 
         Some(file) => file.selected.clone(),
         None => selected(&options.select),
     };
-    let plans = select::plans(&select_options(&selected))?;
-    let list = RunList::of(&plans);
+    let own = file.as_ref().map(|file| file.folders_of(numbers.0));
+    let is_kept = |folder: &str| own.as_ref().is_none_or(|own| own.contains(folder));
+    let listing = select::listing(&select_options(&selected), &is_kept, false)?;
     if let (Some(file), Some(path)) = (&file, &options.shard.plan)
-        && let Err(error) = file.check(&list)
+        && let Err(error) = file.check(&listing.list)
     {
         output::talk(&format!(
             "error: {}: {error}; nothing was run",
@@ -84,8 +86,8 @@ fn asked(options: &RunOptions) -> Result<(Vec<Plan>, RunList, ShardHead), Exit> 
         ));
         return Err(Exit::Usage);
     }
-    let head = ShardHead::new(&list, numbers, selected);
-    Ok((plans, list, head))
+    let head = ShardHead::new(&listing.list, numbers, selected);
+    Ok((listing, head))
 }
 
 fn plan_file(path: &Path) -> Result<PlanFile, Exit> {
@@ -95,7 +97,7 @@ fn plan_file(path: &Path) -> Result<PlanFile, Exit> {
             format!("{}: {error}; nothing was run", path.display()),
         ))
     })?;
-    PlanFile::read(&text).map_err(|error| {
+    PlanFile::read(text).map_err(|error| {
         output::talk(&format!(
             "error: {}: {error}; nothing was run",
             path.display()

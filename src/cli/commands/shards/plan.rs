@@ -8,7 +8,7 @@ use crate::cli::options::arguments::SelectOptions;
 use crate::cli::options::shard::PlanOptions;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::{output, place};
-use crate::experiment::{PlanFile, RunList, Selected, estimated_s};
+use crate::experiment::{PlanFile, Selected};
 use crate::store::SingleFile;
 use crate::wording::counted;
 
@@ -38,17 +38,17 @@ pub(in crate::cli) fn plan(options: &PlanOptions) -> io::Result<Exit> {
             return Ok(place::refused(&error));
         }
     }
-    let plans = match select::plans(&options.select) {
-        Ok(plans) => plans,
+    let listing = match select::listing(&options.select, &|_| false, true) {
+        Ok(listing) => listing,
         Err(exit) => return Ok(exit),
     };
-    let list = RunList::of(&plans);
-    let seconds = estimated_s(&plans);
+    let (list, seconds) = (&listing.list, listing.estimated_s);
     let shards = options
         .shards
         .unwrap_or_else(|| proposed(seconds, list.len()));
-    let file = PlanFile::new(&list, shards, selected(&options.select));
-    let mut written = plan_file.write(&file.text(&list, seconds));
+    let selected = selected(&options.select);
+    let mut written =
+        plan_file.write_by(&|out| PlanFile::write(out, list, shards, &selected, seconds));
     if options.slurm {
         written = written.and_then(|()| script_file.write(&array_script(&options.output, shards)));
     }
