@@ -11,6 +11,7 @@ mod architecture;
 mod assembly;
 mod assumed_values;
 mod average_output;
+mod axi_stream;
 mod bit_exact;
 mod board;
 mod bounds;

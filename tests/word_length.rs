@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::support::svg::Svg;
 use crate::support::{code, fogbench, stderr, stdout, summary, write};
 
 /// A swing of the paper, short, and a filter without fixed-point words.
@@ -21,9 +22,11 @@ fn search(folder: &Path, options: &[&str]) -> (i32, String, String) {
 #[test]
 fn the_shortest_words_do_and_shorter_ones_do_not() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    let (exit, text, talk) = search(folder.path(), &["--filter", "rls", "--format", "json"]);
+    let options = ["--filter", "rls", "--format", "json", "-o", "words"];
+    let (exit, text, talk) = search(folder.path(), &options);
     assert_eq!(exit, 0, "{text}{talk}");
     let found: Value = serde_json::from_str(&text).expect("JSON");
+    check_folder(&folder.path().join("words"), &text, &found);
     let rows = |name: &str| found[name].as_array().expect("trials").clone();
     let (uniform, greedy) = (rows("uniform"), rows("greedy"));
     let (last, shorter) = uniform.split_last().expect("a trial");
@@ -52,6 +55,63 @@ fn the_shortest_words_do_and_shorter_ones_do_not() {
     write(folder.path(), "b.toml", &format!("{SWING}{keys}{table}"));
     let run = fogbench(folder.path(), &["run", "b.toml", "-o", "out"]);
     assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+}
+
+/// The folder of a search holds what is printed, and a picture of every trial.
+fn check_folder(folder: &Path, printed: &str, found: &Value) {
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect("a file");
+    assert_eq!(read("wordlength.json"), printed);
+    assert!(read("wordlength.txt").contains(found["best"].as_str().expect("a table")));
+    let svg = Svg::read(&read("pareto.svg"));
+    let trials = |name: &str| found[name].as_array().expect("trials").clone();
+    let all = [trials("uniform"), trials("greedy")].concat();
+    // A panel each for noise, delay and life, over all bits.
+    assert_eq!(svg.panels.len(), 3);
+    let axis = |panel: usize, axis: &str, end: &str| {
+        let axis = &svg.panels[panel][axis];
+        axis[end].as_f64().expect("an end")
+    };
+    let bits = |trial: &Value| trial["total_bits"].as_f64().expect("bits");
+    for panel in 0..3 {
+        let (low, high) = (axis(panel, "x", "low"), axis(panel, "x", "high"));
+        assert!(all.iter().all(|trial| (low..=high).contains(&bits(trial))));
+    }
+    // The limits of the options: 1.01 and 1 us.
+    assert!((axis(0, "y", "high") - 1.03).abs() < 1e-6);
+    assert!((axis(1, "y", "low") + 3.0).abs() < 1e-6);
+    // Noise below that of binary64 is shown in full.
+    let mut ratios = all.iter().filter_map(|trial| trial["arw_ratio"].as_f64());
+    assert!(ratios.all(|ratio| ratio > axis(0, "y", "low")));
+    // Every trial of one length is a circle in the panels that have a figure of it and inside the axis.
+    let uniform = trials("uniform");
+    let lives = uniform.iter().filter(|trial| trial["does"] == false);
+    let told = |trial: &&Value| trial["delay_change_us"].is_number();
+    let near = |trial: &&Value| trial["delay_change_us"].as_f64().expect("a delay").abs() <= 3.0;
+    let delays = lives.clone().filter(told).filter(near).count();
+    let in_panel = |panel: usize| {
+        let edge = |name: &str| svg.panels[panel][name].as_f64().expect("an edge");
+        let (left, right, top, bottom) = (edge("left"), edge("right"), edge("top"), edge("bottom"));
+        // A marker is a disc and its edge, and the first trial of the signals is the last of one length.
+        let circles = svg.circles.iter();
+        let inside =
+            circles.filter(|(x, y)| (left..=right).contains(x) && (top..=bottom).contains(y));
+        let places = inside.map(|(x, y)| format!("{x:.1} {y:.1}"));
+        places.collect::<std::collections::BTreeSet<String>>().len()
+    };
+    let best = uniform.last().expect("a trial");
+    assert_eq!(in_panel(1), delays + 1, "{best}");
+    assert_eq!(in_panel(2), uniform.len());
+    let best = all.last().expect("a trial");
+    assert!(
+        svg.says(&format!("{} bits", bits(best))),
+        "{:?}",
+        svg.labels
+    );
+    for label in &svg.labels {
+        let width = 0.45 * label.size * label.text.chars().count() as f64;
+        let is_cut = label.anchor == "start" && label.at.0 + width > svg.size.0;
+        assert!(!is_cut && label.at.1 < svg.size.1, "{label:?}");
+    }
 }
 
 #[test]

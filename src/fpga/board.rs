@@ -75,6 +75,17 @@ pub struct Surroundings {
     pub scale: Option<CodeScale>,
 }
 
+impl Surroundings {
+    /// Bits of a sample at the board's port, for words of `F`.
+    #[must_use]
+    pub fn sample_bits<F: Fp>(&self) -> u32 {
+        match self.scale {
+            Some(_) => i32::BITS,
+            None => F::WIDTH,
+        }
+    }
+}
+
 /// A sample at the board's port.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample<F> {

@@ -81,6 +81,7 @@ pub use page::beside::filters_page;
 pub use page::infer::infer_page;
 pub use page::suite::suite_page;
 pub use plot::infer::infer_pictures;
+pub use plot::word_length::{WordLengthPoint, WordLengthSheet, word_length_pictures};
 pub use plot::{Pictures, SVG_BYTES_MAX, SweepPictures, sweep_pictures};
 pub use record::run::{ChannelOutcome, RunOutcome, RunReport, RunStatus};
 pub use record::sweep::{PointFigure, PointOfSweep, assignments_text, swept_value};

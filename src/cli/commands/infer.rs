@@ -13,7 +13,6 @@ use crate::experiment::{
     CalibrateInference, Figures, Inference, Plan, check_problem, estimated_s, infer as search,
 };
 use crate::report::{InferenceSheet, PAGE, infer_json, infer_page, infer_pictures, infer_text};
-use crate::store::{OutputFolder, StoreError};
 
 /// Searches a problem and prints what its figures say; with a folder, writes it there as well.
 pub(in crate::cli) fn infer(options: &InferOptions) -> io::Result<Exit> {
@@ -169,18 +168,9 @@ fn fill(inference: &Inference, place: Place, text: &str, json: &str) -> Result<(
     let own = own.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let files = own.into_iter().chain(pictures.drawn).chain(scenarios);
     let files: Vec<(String, String)> = files.collect();
-    place.fill(|folder| write(folder, &files))?;
+    place.fill_with(&files)?;
     for note in &pictures.notes {
         output::talk(&format!("note: {note}"));
     }
     Ok(())
-}
-
-fn write(folder: &OutputFolder, files: &[(String, String)]) -> Result<(), StoreError> {
-    let staged = folder.stage()?;
-    for (path, text) in files {
-        staged.write(path, text.as_bytes())?;
-    }
-    staged.seal_plainly()?;
-    staged.put_files_in_place()
 }

@@ -9,11 +9,18 @@ use crate::cli::options::wordlength::WordLengthOptions;
 use crate::cli::terminal::complaint;
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
+use crate::cli::terminal::place::Place;
 use crate::experiment::{WordLengthLimits, WordLengthTrial, WordLengths, plan_suite, word_lengths};
+use crate::report::{WordLengthPoint, WordLengthSheet, word_length_pictures};
 use crate::wording::counted;
 
-/// Searches and prints the trials, and the table of the shortest words.
+/// Searches and prints the trials, and the table of the shortest words; with a folder, writes them there as
+/// well, and their picture.
 pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit> {
+    let place = Place::new(options.output.as_deref(), "wordlength", options.force);
+    if let Err(exit) = place.check(&[&options.path]) {
+        return Ok(exit);
+    }
     let plans = match plan_suite(std::slice::from_ref(&options.path), &options.set) {
         Ok(plans) => plans,
         Err(errors) => {
@@ -39,14 +46,61 @@ pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit
             return Ok(Exit::Usage);
         }
     };
-    output::data(&options.format.of(
-        || text(&found, &options.name),
-        || format!("{:#}\n", json_of(&found)),
-    )?)?;
+    let (text, json) = (
+        text(&found, &options.name),
+        format!("{:#}\n", json_of(&found)),
+    );
+    if options.output.is_some() {
+        let title = format!(
+            "{}: words of {}",
+            plan.resolved().scenario.name,
+            options.name
+        );
+        let sheet = sheet(&found, title, limits);
+        if let Err(exit) = fill(place, &sheet, &text, &json) {
+            return Ok(exit);
+        }
+    }
+    output::data(&options.format.of(|| text, || json)?)?;
     Ok(match found.best() {
         Some(_) => Exit::Success,
         None => Exit::GateFailed,
     })
+}
+
+/// What the picture shows of a search.
+fn sheet(found: &WordLengths, title: String, limits: WordLengthLimits) -> WordLengthSheet {
+    let best = found.best();
+    let trials = found.uniform.iter().chain(&found.greedy);
+    let points = trials.map(|trial| WordLengthPoint {
+        bits: trial.words.total_bits(),
+        is_uniform: found.uniform.contains(trial),
+        arw_ratio: trial.arw_ratio,
+        delay_change_us: trial.delay_change_us,
+        diverged_at_s: trial.diverged_at_s,
+        is_pareto: found.is_pareto(trial),
+        is_best: best.is_some_and(|best| std::ptr::eq(best, trial)),
+    });
+    WordLengthSheet {
+        title,
+        points: points.collect(),
+        arw_ratio_max: limits.arw_ratio_max,
+        delay_change_max_us: limits.delay_change_max_us,
+        filtered_s: found.filtered_s,
+    }
+}
+
+/// Fills the output folder: the trials and their picture.
+fn fill(place: Place, sheet: &WordLengthSheet, text: &str, json: &str) -> Result<(), Exit> {
+    let pictures = word_length_pictures(sheet);
+    let own = [("wordlength.txt", text), ("wordlength.json", json)];
+    let own = own.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let files: Vec<(String, String)> = own.into_iter().chain(pictures.drawn).collect();
+    place.fill_with(&files)?;
+    for note in &pictures.notes {
+        output::talk(&format!("note: {note}"));
+    }
+    Ok(())
 }
 
 fn text(found: &WordLengths, name: &str) -> String {

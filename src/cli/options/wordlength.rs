@@ -27,6 +27,12 @@ pub(in crate::cli) struct WordLengthOptions {
     /// Time that the filter has to live, s [default: that of the scenario]
     #[arg(long, value_name = "S", value_parser = within(1e-3, 1e5, "s"))]
     pub(in crate::cli) survive_s: Option<f64>,
+    /// Folder for wordlength.txt, wordlength.json and the picture pareto.svg [default: none is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub(in crate::cli) output: Option<PathBuf>,
+    /// Replace files in the folder that fogbench did not write
+    #[arg(long, requires = "output")]
+    pub(in crate::cli) force: bool,
     /// Form of the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(in crate::cli) format: Format,

@@ -103,6 +103,18 @@ impl<'a> Place<'a> {
             .and_then(|folder| write(&folder))
             .map_err(|error| refused(&error))
     }
+
+    /// Takes the folder, if there is one, and fills it with files: name and text of each.
+    pub(in crate::cli) fn fill_with(self, files: &[(String, String)]) -> Result<(), Exit> {
+        self.fill(|folder| {
+            let staged = folder.stage()?;
+            for (path, text) in files {
+                staged.write(path, text.as_bytes())?;
+            }
+            staged.seal_plainly()?;
+            staged.put_files_in_place()
+        })
+    }
 }
 
 /// Says why results are not written.

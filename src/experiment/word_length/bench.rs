@@ -152,6 +152,11 @@ impl Bench {
         self.input.len()
     }
 
+    /// Time of the last of them, s.
+    pub(super) fn filtered_s(&self) -> f64 {
+        stamp_s((self.input.len() as u64).saturating_sub(1), self.period_s)
+    }
+
     /// Tries some words.
     pub(super) fn trial(&self, words: FixedWords) -> Result<WordLengthTrial, WordLengthError> {
         let filtered = self.run(&HardwareWords::Fixed(words.clone()))?;

@@ -15,6 +15,8 @@ pub struct WordLengths {
     pub kind: &'static str,
     /// Samples that every trial filtered.
     pub samples: usize,
+    /// Time that they take, s.
+    pub filtered_s: f64,
     /// One length for all signals, from the shortest on, to the first that does.
     pub uniform: Vec<WordLengthTrial>,
     /// From there, signal by signal: each the shortest that does beside the others.
@@ -64,6 +66,7 @@ pub fn word_lengths(
     let mut found = WordLengths {
         kind: bench.kind(),
         samples: bench.samples(),
+        filtered_s: bench.filtered_s(),
         uniform: Vec::new(),
         greedy: Vec::new(),
     };

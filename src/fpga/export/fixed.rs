@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::axis::{self, StreamPorts};
 use super::fixed_params::{fixed_json, fixed_macros};
 use super::fixed_top::fixed_top_verilog;
 use super::top::TOP_SAMPLES;
@@ -11,6 +12,7 @@ use super::vectors::write_text;
 use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::{
     CodePair, FixedClock, FixedClocked, FixedConfig, FixedFrontEnd, FixedKind, PortAccess,
+    SignalName,
 };
 use crate::vocabulary::{DesiredSignal, OutputRegister};
 
@@ -52,6 +54,29 @@ pub struct FixedExport {
 }
 
 impl FixedExport {
+    /// The first samples at which a word was beyond the ends of its signal, front end included, and at
+    /// which a denominator or a diagonal element of R was not above zero.
+    pub(super) fn first_faults(&self) -> [Option<usize>; 2] {
+        let pipeline = self.config.as_pipeline();
+        let formats = pipeline.tap_formats();
+        let mut front_end = FixedFrontEnd::new(formats, self.desired, self.input_lag_samples);
+        let mut engine = pipeline.engine();
+        let mut overflow_at = None;
+        for (index, sample) in self.samples.iter().enumerate() {
+            engine.process(front_end.pair(*sample));
+            let core = engine.health().overflows;
+            let beyond = SignalName::ALL.iter().any(|name| core.of(*name) > 0);
+            if overflow_at.is_none() && (beyond || front_end.overflows() != [0; 2]) {
+                overflow_at = Some(index);
+            }
+        }
+        let indefinite_at = engine.health().indefinite_at;
+        [
+            overflow_at,
+            indefinite_at.and_then(|sample| usize::try_from(sample).ok()),
+        ]
+    }
+
     /// The pairs behind the front end.
     #[must_use]
     pub fn pairs(&self) -> Vec<CodePair> {
@@ -113,10 +138,18 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
 pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_fixed_vectors(dir, export)?;
     let kind = export.config.as_pipeline().kind();
-    for (name, text) in SOURCES.iter().chain(kind.sources) {
+    let streams = [axis::PORTS, axis::BENCH];
+    for (name, text) in SOURCES.iter().chain(&streams).chain(kind.sources) {
         files.push(write_text(dir, name, text)?);
     }
+    let formats = export.config.as_pipeline().tap_formats();
+    let ports = StreamPorts {
+        kind: kind.name,
+        bits: [formats.desired.width(), formats.output.width()],
+        latencies: [1; 3],
+    };
     for (name, text) in [
+        (ports.file(), ports.verilog()),
         ("README.txt".to_owned(), readme(kind)),
         (format!("tb_{}.v", kind.name), BENCH.to_owned()),
         (format!("{}_top.v", kind.name), fixed_top_verilog(export)),
@@ -210,7 +243,8 @@ mod tests {
         for kind in FIXED_KINDS {
             let readme = readme(kind);
             let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-            for (name, _) in SOURCES.iter().chain(kind.sources) {
+            let streams = [axis::PORTS, axis::BENCH];
+            for (name, _) in SOURCES.iter().chain(&streams).chain(kind.sources) {
                 assert!(words.contains(name), "{name}");
             }
             for (code, state) in kind.states.iter().enumerate() {

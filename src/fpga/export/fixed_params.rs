@@ -52,6 +52,11 @@ pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
     let board = fixed_board_usage(pipeline);
     let is_late = export.output_register == OutputRegister::NextSample;
     define("TOP", &format!("{}_top", kind.name));
+    define("AXIS", &format!("{}_axis", kind.name));
+    let names = ["AXIS_OVERFLOW_AT", "AXIS_INDEFINITE_AT"];
+    for (name, at) in names.into_iter().zip(export.first_faults()) {
+        define(name, &at.map_or("-1".to_owned(), |at| at.to_string()));
+    }
     define("TOP_CODE", "0");
     define("TOP_NEXT", &u8::from(is_late).to_string());
     define("TOP_FRONT", &board.front_end_clocks.to_string());

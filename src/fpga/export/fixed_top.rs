@@ -28,15 +28,19 @@ pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{sample_bits}:0] sample,         // Q{}.{} of {}\n    \
          output wire        result_valid,   // one clock\n    \
-         output wire [{result_bits}:0] result          // Q{}.{} of the same\n);\n    \
-         wire        pair_valid, pair_ready, core_valid;\n    \
+         output wire [{result_bits}:0] result,         // Q{}.{} of the same\n    \
+         output wire        nan,            // never\n    \
+         output wire        overflow,       // one clock: a word was beyond the ends of its signal\n    \
+         output wire        indefinite      // one clock: a word was not above zero that has to be\n);\n    \
+         wire        pair_valid, pair_ready, core_valid, front_overflow, core_overflow;\n    \
          wire [{}:0] x;\n    wire [{sample_bits}:0] d;\n    wire [{result_bits}:0] y;\n\n    \
          fx_front_end #(\n        {},\n        {},\n        .LAG({}), .MEAN({})\n    ) front (\n        \
          .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
-         .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
+         .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d), .overflow(front_overflow));\n\n    \
          {kind}_core #(\n        {},\n        .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
          .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
-         .out_valid(core_valid), .y(y));\n\n{}endmodule\n\n`default_nettype wire\n",
+         .out_valid(core_valid), .y(y), .overflow(core_overflow), .indefinite(indefinite));\n\n    \
+         assign nan      = 1'b0;\n    assign overflow = front_overflow | core_overflow;\n\n{}endmodule\n\n`default_nettype wire\n",
         desired.integer_bits,
         desired.fraction_bits,
         export.full_scale,

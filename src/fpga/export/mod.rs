@@ -13,6 +13,7 @@
 //! | `wave.vcd`, `wave.fst`, `states.gtkwfilter` | a window of clocks with readable states |
 //! | `params.vh` | the same for the testbench, as Verilog macros |
 //! | `*_top.v`, `samples.hex` | the filter with its constants and its front end; its samples if not codes |
+//! | `*_axis.v`, `axi_stream.v` | the top level with AXI4-Stream ports and flags |
 //! | `synth.sh` | synthesis of the top level for a family of devices, if asked for |
 //! | `*.v`, `*.vh`, `run.sh`, `test_cocotb.py` | RTL, testbench, script, cocotb test |
 //! | `README.txt` | how to run it, every format, how to put in units or a core of one's own |
@@ -21,6 +22,7 @@
 //!
 //! Checked by `rtl`, `waveform`.
 
+mod axis;
 mod fixed;
 mod fixed_params;
 mod fixed_top;

@@ -74,6 +74,7 @@ pub(super) fn params_vh<F: Fp>(
         let kind = pipeline.kind().name;
         let is_late = around.output_register == OutputRegister::NextSample;
         define("TOP", format!("{kind}_top"));
+        define("AXIS", format!("{kind}_axis"));
         define("TOP_CODE", flag(around.scale.is_some()));
         define("TOP_NEXT", flag(is_late));
         define("TOP_FRONT", clocks.front_end_clocks.to_string());

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::axis::{self, StreamPorts};
+use super::params::unit_latencies;
 use super::top::{TOP_SAMPLES, top_samples, top_verilog};
 use super::vectors::{ExportSettings, write_text, write_vectors};
 use crate::fpga::error::FpgaError;
@@ -87,6 +89,16 @@ pub fn write_rtl_parts<F: Fp>(
         let name = format!("{}_top.v", kind.name);
         let text = top_verilog(settings, &top.surroundings);
         files.push(write_text(dir, &name, &text)?);
+        let ports = StreamPorts {
+            kind: kind.name,
+            bits: [top.surroundings.sample_bits::<F>(), F::WIDTH],
+            latencies: unit_latencies(settings.pipeline.as_pipeline().units())
+                .map(|(_, clocks)| clocks),
+        };
+        files.push(write_text(dir, &ports.file(), &ports.verilog())?);
+        for (name, text) in [axis::PORTS, axis::BENCH] {
+            files.push(write_text(dir, name, text)?);
+        }
         if let Some(text) = top_samples(top) {
             files.push(write_text(dir, TOP_SAMPLES, &text)?);
         }
@@ -103,8 +115,10 @@ pub fn write_rtl_parts<F: Fp>(
 fn synthesis(text: &str, kind: &str, device: Device, units: &str) -> String {
     let sources =
         format!("{kind}_top.v front_end.v {kind}_core.v {kind}_ctrl.v sp_ram.v fp_wait.v {units}");
+    let ports = format!("{kind}_axis.v axi_stream.v");
     text.replace("@DEVICE@", device.word())
-        .replace("@TOP@", &format!("{kind}_top"))
+        .replace("@KIND@", kind)
+        .replace("@PORTS@", &ports)
         .replace("@SOURCES@", &sources)
 }
 

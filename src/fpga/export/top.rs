@@ -41,13 +41,13 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
     let name = kind.name;
     let width = F::WIDTH;
     let forms_mean = around.desired == DesiredSignal::TwoSampleMean;
-    let (bits, sample, unit) = match &around.scale {
+    let bits = around.sample_bits::<F>();
+    let (sample, unit) = match &around.scale {
         Some(scale) => (
-            32,
             format!("two's complement, {:e} {} each", scale.lsb, scale.unit),
             scale.word_unit.as_str(),
         ),
-        None => (width, "word".to_owned(), "the unit of the samples"),
+        None => ("word".to_owned(), "the unit of the samples"),
     };
     let scale = around.scale.as_ref();
     let constant = |value: Option<f64>| {
@@ -70,6 +70,7 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
     let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
     let waits = latencies_of_core(kind.sources[1].1);
+    let fraction = if width == 64 { 52 } else { 23 };
     let register = output_register(around.output_register, width);
     format!(
         "{TOP_HEAD}module {name}_top #(\n    parameter ADD_LATENCY = {add},      // clocks of the adder\n    \
@@ -79,7 +80,10 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{}:0] sample,         // {sample}\n    \
          output wire        result_valid,   // one clock\n    \
-         output wire [{}:0] result          // {}, {unit}\n);\n    \
+         output wire [{}:0] result,         // {}, {unit}\n    \
+         output wire        nan,            // one clock each: the new y is a NaN,\n    \
+         output wire        overflow,       // or infinite;\n    \
+         output wire        indefinite      // its denominator is a NaN or not above zero\n);\n    \
          wire        pair_valid, pair_ready, core_valid;\n    \
          wire [{}:0] x, d, y;\n\n    \
          front_end #(\n        .W({width}), .CODE({}), .LSB({}), .FACTOR({}),\n        \
@@ -89,7 +93,10 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
          .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d));\n\n    \
          {name}_core #(\n        {core},\n        .FTZ({flushes}), {waits}.DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
          .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
-         .out_valid(core_valid), .y(y));\n\n{register}endmodule\n\n`default_nettype wire\n",
+         .out_valid(core_valid), .y(y), .indefinite(indefinite));\n\n    \
+         wire no_number = &y[{}:{fraction}];\n    wire no_fraction = ~|y[{}:0];\n    \
+         assign nan      = core_valid & no_number & ~no_fraction;\n    \
+         assign overflow = core_valid & no_number & no_fraction;\n\n{register}endmodule\n\n`default_nettype wire\n",
         bits - 1,
         width - 1,
         F::NAME,
@@ -99,6 +106,8 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         constant(scale.map(|scale| scale.factor)),
         around.input_lag_samples,
         u8::from(forms_mean),
+        width - 2,
+        fraction - 1,
     )
 }
 

@@ -22,6 +22,7 @@ pub(super) mod sweep;
 pub(super) mod swing;
 pub(super) mod temperature;
 pub(super) mod thermal;
+pub(super) mod word_length;
 
 pub(super) use budget::budget_svg;
 pub(super) use calibration::calibration_svg;

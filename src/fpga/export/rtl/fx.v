@@ -14,7 +14,8 @@ module fx_store #(
     parameter SAT   = 1
 ) (
     input  wire signed [AW-1:0]    a,
-    output wire signed [WIDTH-1:0] q
+    output wire signed [WIDTH-1:0] q,
+    output wire                    over     // beyond the ends of the word
 );
     localparam DOWN = FROM > N ? FROM - N : 0;
     localparam UP   = N > FROM ? N - FROM : 0;
@@ -32,7 +33,7 @@ module fx_store #(
             assign rounded = below + $signed({{(AW-1){1'b0}}, up});
         end
     endgenerate
-    fx_limit #(.AW(AW), .WIDTH(WIDTH), .SAT(SAT)) limit (.a(rounded), .q(q));
+    fx_limit #(.AW(AW), .WIDTH(WIDTH), .SAT(SAT)) limit (.a(rounded), .q(q), .over(over));
 endmodule
 
 // A whole number of steps into a word.
@@ -42,10 +43,12 @@ module fx_limit #(
     parameter SAT   = 1
 ) (
     input  wire signed [AW-1:0]    a,
-    output wire signed [WIDTH-1:0] q
+    output wire signed [WIDTH-1:0] q,
+    output wire                    over
 );
     wire fits = a[AW-1:WIDTH-1] == {(AW-WIDTH+1){a[WIDTH-1]}};
     assign q = fits || SAT == 0 ? a[WIDTH-1:0] : {a[AW-1], {(WIDTH-1){~a[AW-1]}}};
+    assign over = !fits;
 endmodule
 
 // q = a / b into a word, right when done; a and b are held while req is up; done rises LATENCY
@@ -63,7 +66,8 @@ module fx_div #(
     input  wire signed [AW-1:0]    a,
     input  wire signed [AW-1:0]    b,
     output wire                    done,
-    output wire signed [WIDTH-1:0] q
+    output wire signed [WIDTH-1:0] q,
+    output wire                    over     // beyond the ends of the word, or b = 0
 );
     reg [15:0] waited;
     always @(posedge clk)
@@ -85,8 +89,11 @@ module fx_div #(
     wire up = RND == 0 ? 1'b0 : RND == 1 ? twice >= m : twice > m || (twice == m && below[0]);
     wire signed [AW-1:0] rounded = below + $signed({{(AW-1){1'b0}}, up});
     wire signed [WIDTH-1:0] limited;
-    fx_limit #(.AW(AW), .WIDTH(WIDTH), .SAT(SAT)) limit (.a(rounded), .q(limited));
+    wire too_large;
+    fx_limit #(.AW(AW), .WIDTH(WIDTH), .SAT(SAT)) limit (
+        .a(rounded), .q(limited), .over(too_large));
     assign q = zero ? {a[AW-1], {(WIDTH-1){~a[AW-1]}}} : limited;
+    assign over = zero | too_large;
 endmodule
 /* verilator lint_on DECLFILENAME */
 

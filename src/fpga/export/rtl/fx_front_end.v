@@ -22,7 +22,8 @@ module fx_front_end #(
     output wire          pair_valid,
     input  wire          pair_ready,
     output wire [WX-1:0] x,
-    output wire [WD-1:0] d
+    output wire [WD-1:0] d,
+    output wire          overflow   // x or d was beyond the ends of its words; one clock
 );
     localparam DEPTH = LAG > 1 ? LAG : 1;
     localparam AW    = 128;
@@ -33,6 +34,7 @@ module fx_front_end #(
     reg  [WD*DEPTH-1:0] held;       // older words, newest in the lowest bits
     /* verilator lint_on UNUSED */
 
+    wire x_over, d_over;
     wire handed = pair_valid & pair_ready;
     wire take   = valid & ready;
     assign ready      = ~offering | handed;
@@ -72,15 +74,18 @@ module fx_front_end #(
         end
         if (MEAN != 0) begin : averaged
             fx_store #(.FROM(ND + 1), .WIDTH(WD), .N(ND), .RND(RD), .SAT(SD)) store_d (
-                .a(newest_wide + earlier_wide), .q(d));
+                .a(newest_wide + earlier_wide), .q(d), .over(d_over));
         end else begin : current
             /* verilator lint_off UNUSED */
             wire signed [AW-1:0] unused = newest_wide + earlier_wide;
             /* verilator lint_on UNUSED */
             assign d = newest;
+            assign d_over = 1'b0;
         end
     endgenerate
-    fx_store #(.FROM(ND), .WIDTH(WX), .N(NX), .RND(RX), .SAT(SX)) store_x (.a(old_wide), .q(x));
+    fx_store #(.FROM(ND), .WIDTH(WX), .N(NX), .RND(RX), .SAT(SX)) store_x (
+        .a(old_wide), .q(x), .over(x_over));
+    assign overflow = handed & (x_over | d_over);
 endmodule
 
 `default_nettype wire

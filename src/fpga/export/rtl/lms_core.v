@@ -39,9 +39,11 @@ module lms_core #(
     input  wire [W-1:0] x,          // regressor word
     input  wire [W-1:0] d,          // desired word, used with D_PORT only
     output wire         out_valid,  // one clock
-    output wire [W-1:0] y           // filtered word
+    output wire [W-1:0] y,          // filtered word
+    output wire         indefinite  // one clock: the new DEN is a NaN or not above zero
 );
     localparam AB = N > 1 ? $clog2(N) : 1;
+    localparam FB = W == 64 ? 52 : 23;              // fraction bits
     /* verilator lint_off WIDTH */
     localparam [W-1:0] ONE  = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
     localparam [W-1:0] HALF = W == 64 ? 64'h3fe0000000000000 : 64'h3f000000;
@@ -134,6 +136,12 @@ module lms_core #(
         end
 
     assign y = yy;
+
+    // Looked at in the register, a clock after it was loaded: not behind the adder.
+    reg den_new;
+    always @(posedge clk) den_new <= ~rst & den_en;
+    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
+    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

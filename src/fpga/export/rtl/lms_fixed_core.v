@@ -42,7 +42,11 @@ module lms_fixed_core #(
     input  wire [WX-1:0] x,
     input  wire [WD-1:0] d,
     output wire          out_valid, // one clock
-    output wire [WY-1:0] y
+    output wire [WY-1:0] y,
+    // One clock each: a word is stored that was beyond the ends of its signal; a denominator is
+    // stored that is not above zero.
+    output wire          overflow,
+    output wire          indefinite
 );
     localparam AW = 128;            // exact values
     localparam AB = N > 1 ? $clog2(N) : 1;
@@ -89,6 +93,8 @@ module lms_fixed_core #(
     sp_ram #(.W(WW), .DEPTH(N), .AW(AB)) ramb (
         .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
+    wire t_over, den_over, y_over, e_over, w_over, k_over;
+
     // Exact values.
     localparam ST_T = NX + NT;                      // scale of L*t
     localparam FW = NW > ST_T ? NW : ST_T;          // scale of W + L*t
@@ -107,12 +113,15 @@ module lms_fixed_core #(
     wire signed [AW-1:0] e_exact = (d_wide <<< (FE - ND)) - (y_wide <<< (FE - NY));
 
     fx_store #(.FROM(2 * NX), .WIDTH(WN), .N(NN), .RND(RN), .SAT(SN)) store_den (
-        .a(sum), .q(den_word));
-    fx_store #(.FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_y (.a(sum), .q(y_word));
-    fx_store #(.FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_e (.a(e_exact), .q(e_word));
+        .a(sum), .q(den_word), .over(den_over));
+    fx_store #(.FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_y (
+        .a(sum), .q(y_word), .over(y_over));
+    fx_store #(.FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_e (
+        .a(e_exact), .q(e_word), .over(e_over));
     fx_store #(.FROM(NY + NK), .WIDTH(WT), .N(NT), .RND(RT), .SAT(ST)) store_t (
-        .a(product), .q(t_word));
-    fx_store #(.FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW)) store_w (.a(w_exact), .q(w_word));
+        .a(product), .q(t_word), .over(t_over));
+    fx_store #(.FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW)) store_w (
+        .a(w_exact), .q(w_word), .over(w_over));
 
     // Plain LMS never divides.
     generate
@@ -124,10 +133,11 @@ module lms_fixed_core #(
             /* verilator lint_on WIDTH */
             fx_div #(.WIDTH(WK), .RND(RK), .SAT(SK), .LATENCY(DIV_LATENCY)) div (
                 .clk(clk), .rst(rst), .req(div_req), .a(mu_wide <<< UP), .b(den_wide <<< DN),
-                .done(div_done), .q(k_word));
+                .done(div_done), .q(k_word), .over(k_over));
         end else begin : without_divider
             assign div_done = div_req;
             assign k_word   = {WK{1'b0}};
+            assign k_over   = 1'b0;
         end
     endgenerate
 
@@ -155,6 +165,9 @@ module lms_fixed_core #(
         end
 
     assign y = yy;
+    assign overflow = (den_en & den_over) | (rcp_en & k_over) | (y_en & y_over) | (e_en & e_over)
+                    | (e_gain & t_over) | (rb_we & ~clear & w_over);
+    assign indefinite = den_en & (den_word <= 0);
 endmodule
 
 `default_nettype wire

@@ -43,10 +43,12 @@ module rls_core #(
     input  wire [W-1:0] x,          // regressor word
     input  wire [W-1:0] d,          // desired word
     output wire         out_valid,  // one clock
-    output wire [W-1:0] y           // filtered word
+    output wire [W-1:0] y,          // filtered word
+    output wire         indefinite  // one clock: the new DEN is a NaN or not above zero
 );
     localparam RA = $clog2(2 * P);
     localparam RB = $clog2(2 * P + P * P);
+    localparam FB = W == 64 ? 52 : 23;              // fraction bits
     /* verilator lint_off WIDTH */
     localparam [W-1:0] ONE = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
     /* verilator lint_on WIDTH */
@@ -133,6 +135,12 @@ module rls_core #(
         end
 
     assign y = yy;
+
+    // Looked at in the register, a clock after it was loaded: not behind the adder.
+    reg den_new;
+    always @(posedge clk) den_new <= ~rst & den_en;
+    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
+    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

@@ -50,7 +50,11 @@ module rls_fixed_core #(
     input  wire [WX-1:0] x,
     input  wire [WD-1:0] d,
     output wire          out_valid, // one clock
-    output wire [WY-1:0] y
+    output wire [WY-1:0] y,
+    // One clock each: a word is stored that was beyond the ends of its signal; a denominator or a
+    // diagonal element of R is stored that is not above zero.
+    output wire          overflow,
+    output wire          indefinite
 );
     localparam AW = 128;            // exact values
     localparam RA = $clog2(2 * P);
@@ -247,6 +251,8 @@ module rls_fixed_core #(
     sp_ram #(.W(MW), .DEPTH(2 * P + P * P)) ramb (
         .clk(clk), .we(rb_we), .addr(rb_addr), .wdata(rb_wdata), .rdata(rb_rdata));
 
+    wire t_over, den_over, y_over, e_over, w_over, diff_over, r_over, k_over;
+
     // Exact values.
     localparam SP = NK + NT;                        // scale of k*t
     localparam FR = NR > SP ? NR : SP;              // scale of R - k*t
@@ -265,14 +271,18 @@ module rls_fixed_core #(
     wire signed [AW-1:0] w_exact = (rr_wide <<< (FW - NW)) + (p <<< (FW - SE));
     wire signed [AW-1:0] e_exact = (d_wide <<< (FE - ND)) - (y_wide <<< (FE - NY));
 
-    fx_store #(.FROM(NX + NR), .WIDTH(WT), .N(NT), .RND(RT), .SAT(ST)) store_t (.a(sum), .q(t_word));
+    fx_store #(.FROM(NX + NR), .WIDTH(WT), .N(NT), .RND(RT), .SAT(ST)) store_t (
+        .a(sum), .q(t_word), .over(t_over));
     fx_store #(.FROM(NX + NT), .WIDTH(WN), .N(NN), .RND(RN), .SAT(SN)) store_den (
-        .a(sum), .q(den_word));
-    fx_store #(.FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_y (.a(sum), .q(y_word));
+        .a(sum), .q(den_word), .over(den_over));
+    fx_store #(.FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_y (
+        .a(sum), .q(y_word), .over(y_over));
     fx_store #(.FROM(FR), .WIDTH(WR), .N(NR), .RND(RR), .SAT(SR)) store_diff (
-        .a(r_exact), .q(r_diff));
-    fx_store #(.FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW)) store_w (.a(w_exact), .q(w_word));
-    fx_store #(.FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_e (.a(e_exact), .q(e_word));
+        .a(r_exact), .q(r_diff), .over(diff_over));
+    fx_store #(.FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW)) store_w (
+        .a(w_exact), .q(w_word), .over(w_over));
+    fx_store #(.FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_e (
+        .a(e_exact), .q(e_word), .over(e_over));
     generate
         if (SCALES != 0) begin : scaled
             /* verilator lint_off WIDTH */
@@ -280,14 +290,15 @@ module rls_fixed_core #(
             wire signed [AW-1:0] ia_wide   = IALPHA;
             /* verilator lint_on WIDTH */
             fx_store #(.FROM(NR + NI), .WIDTH(WR), .N(NR), .RND(RR), .SAT(SR)) store_r (
-                .a(diff_wide * ia_wide), .q(r_word));
+                .a(diff_wide * ia_wide), .q(r_word), .over(r_over));
         end else begin : unscaled
             assign r_word = r_diff;
+            assign r_over = 1'b0;
         end
     endgenerate
     fx_div #(.WIDTH(WK), .RND(RK), .SAT(SK), .LATENCY(DIV_LATENCY)) div (
         .clk(clk), .rst(rst), .req(div_req), .a(b_wide <<< UP), .b(den_wide <<< DN),
-        .done(div_done), .q(k_word));
+        .done(div_done), .q(k_word), .over(k_over));
 
     /* verilator lint_off WIDTH */
     wire signed [MW-1:0] den_mw = den_word;
@@ -314,6 +325,12 @@ module rls_fixed_core #(
     assign in_ready  = state == LOAD;
     assign out_valid = (state == RFW_R) & ~second;
     assign y         = yy;
+    assign overflow  = ((state == RIL_W) & t_over) | ((state == LRL_W) & den_over)
+                     | (div_req & div_done & k_over) | ((state == RFR_W) & (diff_over | r_over))
+                     | ((state == OUT_W) & y_over) | ((state == RFW_R) & ~second & e_over)
+                     | ((state == RFW_W) & w_over);
+    assign indefinite = ((state == LRL_W) & (den_word <= 0))
+                      | ((state == RFR_W) & (i == j) & (rm <= 0));
 endmodule
 
 `default_nettype wire

@@ -18,7 +18,7 @@
 #   MUL_LATENCY=n
 #   UNITS=fp_sim.v           file of the floating-point units, default fp_units.v where it is
 #   BLACK_BOX=1              compares only output words and clocks: for a core of your own
-#   BENCH=core|top           only the core's testbench or only that of the top level
+#   BENCH="core top axis"    testbenches: of the core, of the top level, of its stream ports
 #   CORE="a.v b.v"           source files of that core, instead of the shipped ones
 # Exit: 0 all words and clocks match, 1 mismatch or broken vectors, 2 usage, 127 no simulator.
 set -eu
@@ -54,11 +54,18 @@ if [ -z "$filter" ]; then
 fi
 
 sim=${SIM:-iverilog}
-bench=${BENCH:-all}
-case "$bench" in all|core|top) ;; *)
-    echo "run.sh: BENCH has to be core or top, not $bench" >&2
-    exit 2 ;;
-esac
+benches=${BENCH:-core top axis}
+for bench in $benches; do
+    case "$bench" in core|top|axis) ;; *)
+        echo "run.sh: BENCH has to be of core, top and axis, not $bench" >&2
+        exit 2 ;;
+    esac
+done
+# asked BENCH: whether it is to run.
+asked() {
+    case " $benches " in *" $1 "*) return 0 ;; esac
+    return 1
+}
 if ! command -v "$sim" > /dev/null 2>&1; then
     echo "run.sh: simulator not found: $sim" >&2
     exit 127
@@ -146,9 +153,11 @@ for file in front_end.v fx_front_end.v; do
     if [ -f "$here/$file" ]; then front="$front $file"; fi
 done
 core="${CORE:-$own}"
-if [ "$bench" != top ]; then simulate "tb_$filter" "tb_$filter.v $core" "$@" || exit 1; fi
+if asked core; then simulate "tb_$filter" "tb_$filter.v $core" "$@" || exit 1; fi
 # The top level is that of this folder's own vectors. A core of one's own is not in it.
-if [ "$bench" != core ] && [ "$vectors" = "$here" ] && [ -z "${BLACK_BOX-}" ] \
-    && [ -f "$here/${filter}_top.v" ]; then
-    simulate top_bench "top_bench.v ${filter}_top.v $front $core" "+VEC_DIR=$vectors" || exit 1
+if [ "$vectors" = "$here" ] && [ -z "${BLACK_BOX-}" ] && [ -f "$here/${filter}_top.v" ]; then
+    level="${filter}_top.v $front $core"
+    if asked top; then simulate top_bench "top_bench.v $level" "+VEC_DIR=$vectors" || exit 1; fi
+    ports="axis_bench.v ${filter}_axis.v axi_stream.v"
+    if asked axis; then simulate axis_bench "$ports $level" "+VEC_DIR=$vectors" || exit 1; fi
 fi

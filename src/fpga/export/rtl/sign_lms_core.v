@@ -45,7 +45,8 @@ module sign_lms_core #(
     input  wire [W-1:0] x,          // regressor word
     input  wire [W-1:0] d,          // desired word
     output wire         out_valid,  // one clock
-    output wire [W-1:0] y           // filtered word
+    output wire [W-1:0] y,          // filtered word
+    output wire         indefinite  // one clock: the new DEN is a NaN or not above zero
 );
     localparam AB = M > 1 ? $clog2(M) : 1;
     localparam FB = W == 64 ? 52 : 23;              // fraction bits
@@ -146,6 +147,12 @@ module sign_lms_core #(
         end
 
     assign y = yy;
+
+    // Looked at in the register, a clock after it was loaded: not behind the adder.
+    reg den_new;
+    always @(posedge clk) den_new <= ~rst & den_en;
+    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
+    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

@@ -9,17 +9,24 @@
 #   NEXTPNR=...         nextpnr-ecp5 or nextpnr-ice40, or those of the Python packages; a router that is
 #                       not there leaves fmax_mhz null, and so does xilinx, which has none
 #   ROUTE=0             synthesis only
+#   PORTS=axis          the filter with AXI4-Stream ports
 #   SEED=1              seed of the placement
 #   FREQ=50             MHz that the router is asked for; less is reported, not an error
-# Exit: 0 done, 1 synthesis or routing failed, 127 no yosys.
+# Exit: 0 done, 1 synthesis or routing failed, 2 usage, 127 no yosys.
 #
 # resources.json: luts counts four-input tables (ecp5: two more for each carry cell; xilinx: tables of
 # any size), lut_rams the cells of distributed memory; fmax_mhz is the router's estimate.
 set -eu
 
 device=@DEVICE@
-top=@TOP@
+top=@KIND@_top
 sources="@SOURCES@"
+case "${PORTS:-plain}" in
+    plain) ;;
+    axis) top=@KIND@_axis sources="@PORTS@ $sources" ;;
+    *) echo "synth.sh: PORTS has to be plain or axis, not $PORTS" >&2
+       exit 2 ;;
+esac
 
 here=$(cd "$(dirname "$0")" && pwd)
 yosys=${YOSYS:-yosys}

@@ -194,6 +194,14 @@
             if (`DUT.yy !== zero) fail("Y after reset", zero, `DUT.yy);
             if (`DUT.ctrl.head != `VEC_TAPS - 1)
                 fail_count("HEAD after reset", `VEC_TAPS - 1, `DUT.ctrl.head);
+            // What no column of the trace shows, but the next samples depend on.
+            if (`DUT.ctrl.slot != `VEC_TAPS - 1)
+                fail_count("slot after reset", `VEC_TAPS - 1, `DUT.ctrl.slot);
+`ifdef VEC_SIGN_LMS
+            if (`DUT.norm !== zero) fail("norm after reset", zero, `DUT.norm);
+            if (`DUT.ctrl.age != 0) fail_count("age after reset", 0, `DUT.ctrl.age);
+            if (`DUT.ctrl.held != 0) fail_count("held after reset", 0, `DUT.ctrl.held);
+`endif
             check_memories(1'b0);
         end
     endtask

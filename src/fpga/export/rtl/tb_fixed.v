@@ -67,6 +67,9 @@ module `VEC_BENCH;
             if (dut.p !== 0 || dut.acc !== 0 || dut.rr !== 0 || dut.den !== 0 || dut.dd !== 0
                 || dut.ee !== 0 || dut.yy !== 0 || `VEC_CONTROL.head != `VEC_TAPS - 1)
                 fail("registers", 0, 1);
+`ifdef VEC_SIGN_LMS_FIXED
+            if (dut.norm !== 0 || dut.ctrl.held != 0) fail("norm and guard", 0, 1);
+`endif
             check_memories(1'b0);
         end
     endtask
