@@ -54,19 +54,7 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         let bits = value.unwrap_or(1.0).to_bits();
         format!("64'h{bits:016x}")
     };
-    let mut core = format!(
-        ".{}({}), .W({width})",
-        kind.tap_parameter,
-        pipeline.tap_count()
-    );
-    let subtracts = pipeline.update_sign() == UpdateSign::AsPrinted;
-    for (own, value) in pipeline.parameters().macros {
-        let _ = write!(core, ",\n        .{own}({})", macro_value(value));
-    }
-    // The line enhancer has one sign only.
-    if kind.sources[1].1.contains(" UPDATE_SUB ") {
-        let _ = write!(core, ",\n        .UPDATE_SUB({})", u8::from(subtracts));
-    }
+    let core = core_parameters(settings);
     let flushes = u8::from(F::FLUSHES_SUBNORMALS);
     let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
     let waits = latencies_of_core(kind.sources[1].1);
@@ -109,6 +97,23 @@ pub(super) fn top_verilog<F: Fp>(settings: &ExportSettings<F>, around: &Surround
         width - 2,
         fraction - 1,
     )
+}
+
+/// Parameters of the core that its settings give.
+fn core_parameters<F: Fp>(settings: &ExportSettings<F>) -> String {
+    let pipeline = settings.pipeline.as_pipeline();
+    let kind = pipeline.kind();
+    let (taps, width) = (pipeline.tap_count(), F::WIDTH);
+    let mut core = format!(".{}({taps}), .W({width})", kind.tap_parameter);
+    for (own, value) in pipeline.parameters().macros {
+        let _ = write!(core, ",\n        .{own}({})", macro_value(value));
+    }
+    // The line enhancer has one sign only.
+    if kind.sources[1].1.contains(" UPDATE_SUB ") {
+        let subtracts = pipeline.update_sign() == UpdateSign::AsPrinted;
+        let _ = write!(core, ",\n        .UPDATE_SUB({})", u8::from(subtracts));
+    }
+    core
 }
 
 /// Verilog of the output register.
