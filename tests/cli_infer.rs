@@ -105,12 +105,12 @@ fn the_shipped_data_sheet_contradicts_itself_and_leaves_scenarios_that_can_be_ru
     );
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let found: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
-    // 0.012 deg/sqrt(h) alone are 0.072 deg/h over 100 s, and 0.05 are stated.
+    // 0.012 deg/sqrt(h) alone are 0.072 deg/h over 100 s, and 0.05 are stated: the walk is named, and the
+    // bias stability lies near its limit, on either side of it.
     let explained = |index: usize| found["figures"][index]["explained"].as_bool();
-    assert_eq!(
-        [0, 1, 2, 3].map(explained),
-        [Some(false), Some(false), Some(true), Some(true)]
-    );
+    let others = [Some(false), Some(true), Some(true)];
+    assert_eq!([0, 2, 3].map(explained), others);
+    assert!(number(&found["figures"][1]["pull"]) < -1.0, "{found:#}");
     let output = fogbench(folder.path(), &["check", "out/scenarios"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
 }
