@@ -190,7 +190,8 @@ fn known_answer_the_scale_factor_goes_with_the_temperature_where_a_reference_or_
 }
 
 /// A gyro of the rate model in a chamber that goes up and down twice; nothing but its noise, and the effects
-/// of the temperature. Half an hour, as the rate model finds the matrices of its loop anew for each word.
+/// of the temperature. Half an hour of a coil that follows its case within a minute or so, as the rate model finds
+/// the matrices of its loop anew for each word.
 const CHAMBER: &str = r#"
 schema = 1
 name = "chamber"
@@ -210,6 +211,9 @@ rate_random_walk_deg_per_h_per_sqrt_h = 0.0
 times_s = [0.0, 450.0, 900.0, 1350.0, 1800.0]
 temperatures_c = [10.0, 40.0, 10.0, 40.0, 10.0]
 [gyro.thermal]
+case_time_constant_s = 75.0
+outer_time_constant_s = 37.5
+inner_time_constant_s = 12.5
 index_per_k = 0.0
 bias_deg_per_h_per_k = 0.03
 bias_deg_per_h_per_k2 = -0.002
@@ -229,6 +233,9 @@ fn known_answer_a_simulated_gyro_gives_back_what_its_file_says() {
         temperatures_c: vec![10.0, 40.0, 10.0, 40.0, 10.0],
         ..TemperatureProfileConfig::reference()
     });
+    gyro.thermal.case_time_constant_s = 75.0;
+    gyro.thermal.outer_time_constant_s = 37.5;
+    gyro.thermal.inner_time_constant_s = 12.5;
     let count = u32::try_from(words.len()).expect("some words");
     let temperature_c = coil_temperatures_c(&gyro, first_s, next_s - first_s, count);
     let record = WarmRecord {
