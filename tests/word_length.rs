@@ -19,6 +19,51 @@ fn search(folder: &Path, options: &[&str]) -> (i32, String, String) {
     (code(&output), stdout(&output), stderr(&output))
 }
 
+/// A search at rest: its answer.
+fn search_at_rest(folder: &Path, options: &[&str]) -> Value {
+    let (motion, filter) = (SWING.find("[turntable"), SWING.find("[[filter"));
+    let rest = [
+        &SWING[..motion.expect("a swing")],
+        &SWING[filter.expect("a filter")..],
+    ]
+    .concat();
+    write(
+        folder,
+        "rest.toml",
+        &rest.replace("duration_s = 1.0", "duration_s = 4.0"),
+    );
+    let arguments = [
+        "wordlength",
+        "rest.toml",
+        "--filter",
+        "rls",
+        "--format",
+        "json",
+    ];
+    let output = fogbench(folder, &[&arguments[..], options].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).expect("JSON")
+}
+
+fn ratio_of(trial: &Value) -> f64 {
+    trial["arw_ratio"].as_f64().expect("a ratio")
+}
+
+#[test]
+fn words_that_let_no_signal_through_are_not_quiet_but_wrong() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    for most in ["1.01", "1.5"] {
+        let found = search_at_rest(folder.path(), &["--max-arw-ratio", most]);
+        let most: f64 = most.parse().expect("a ratio");
+        let greedy = found["greedy"].as_array().expect("trials");
+        assert!(!greedy.is_empty());
+        for trial in greedy {
+            let ratio = ratio_of(trial);
+            assert!((1.0 / most..=most).contains(&ratio), "{trial}");
+        }
+    }
+}
+
 #[test]
 fn the_shortest_words_do_and_shorter_ones_do_not() {
     let folder = tempfile::tempdir().expect("a scratch folder");
@@ -43,7 +88,7 @@ fn the_shortest_words_do_and_shorter_ones_do_not() {
     let mut before = bits(last);
     for trial in &greedy {
         assert_eq!(trial["does"], true, "{trial}");
-        assert!(trial["arw_ratio"].as_f64().expect("a ratio") <= 1.01);
+        assert!((1.0 / 1.01..=1.01).contains(&ratio_of(trial)), "{trial}");
         assert!(trial["delay_change_us"].as_f64().expect("a delay").abs() <= 1.0);
         assert!(bits(trial) <= before);
         before = bits(trial);
@@ -78,10 +123,8 @@ fn check_folder(folder: &Path, printed: &str, found: &Value) {
     }
     // The limits of the options: 1.01 and 1 us.
     assert!((axis(0, "y", "high") - 1.03).abs() < 1e-6);
+    assert!((axis(0, "y", "low") - 0.97).abs() < 1e-6);
     assert!((axis(1, "y", "low") + 3.0).abs() < 1e-6);
-    // Noise below that of binary64 is shown in full.
-    let mut ratios = all.iter().filter_map(|trial| trial["arw_ratio"].as_f64());
-    assert!(ratios.all(|ratio| ratio > axis(0, "y", "low")));
     // Every trial of one length is a circle in the panels that have a figure of it and inside the axis.
     let uniform = trials("uniform");
     let lives = uniform.iter().filter(|trial| trial["does"] == false);

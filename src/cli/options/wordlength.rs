@@ -18,7 +18,7 @@ pub(in crate::cli) struct WordLengthOptions {
     /// Override a key of the scenario; `filter.<name>.<key>` reaches into a filter
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(in crate::cli) set: Vec<String>,
-    /// Largest ratio of the Allan deviation at 0.1 s to that in binary64
+    /// Largest ratio of the Allan deviation at 0.1 s to that in binary64, and of that to it
     #[arg(long, value_name = "R", default_value_t = 1.01, value_parser = within(0.5, 100.0, ""))]
     pub(in crate::cli) max_arw_ratio: f64,
     /// Largest change of the delay of a swing against binary64, us

@@ -1,5 +1,7 @@
 //! One trial of word lengths.
 
+use std::ops::RangeInclusive;
+
 use crate::experiment::plan::Plan;
 use crate::experiment::run::{first_words, motion, stamp_s};
 use crate::filters::{FilterKind, FixedWords, HardwareWords};
@@ -15,12 +17,21 @@ const ALLAN_S: f64 = 0.1;
 /// What words have to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WordLengthLimits {
-    /// Largest ratio of the Allan deviations at 0.1 s to that of binary64.
+    /// Largest ratio of the Allan deviation at 0.1 s to that of binary64, and of that to it: words that are much
+    /// quieter than those of binary64 have lost the signal.
     pub arw_ratio_max: f64,
     /// Largest change of the delay against binary64, us.
     pub delay_change_max_us: f64,
     /// Time that the filter has to live, s; none: the scenario's.
     pub survive_s: Option<f64>,
+}
+
+impl WordLengthLimits {
+    /// Ratios of the Allan deviation to that of binary64 that words may have.
+    #[must_use]
+    pub fn arw_ratios(&self) -> RangeInclusive<f64> {
+        self.arw_ratio_max.recip()..=self.arw_ratio_max
+    }
 }
 
 /// Why there is nothing to try.
@@ -175,7 +186,7 @@ impl Bench {
             s_to_us((later - later.round()) / self.frequency_hz())
         });
         let does = diverged_at_s.is_none()
-            && arw_ratio.is_some_and(|ratio| ratio <= self.limits.arw_ratio_max)
+            && arw_ratio.is_some_and(|ratio| self.limits.arw_ratios().contains(&ratio))
             && delay_change_us.is_none_or(|us| us.abs() <= self.limits.delay_change_max_us);
         Ok(WordLengthTrial {
             words,

@@ -43,11 +43,14 @@ impl WordLengths {
     }
 }
 
-/// What is to be small: bits, ratio of the noise, change of the delay, and the life with its sign.
+/// What is to be small: bits, how far the noise is from that of binary64, change of the delay, and the life with
+/// its sign.
 fn costs(trial: &WordLengthTrial) -> [f64; 4] {
     [
         f64::from(trial.words.total_bits()),
-        trial.arw_ratio.unwrap_or(f64::INFINITY),
+        trial
+            .arw_ratio
+            .map_or(f64::INFINITY, |ratio| ratio.ln().abs()),
         trial.delay_change_us.map_or(0.0, f64::abs),
         -trial.diverged_at_s.unwrap_or(f64::INFINITY),
     ]

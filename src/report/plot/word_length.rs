@@ -45,7 +45,7 @@ pub struct WordLengthSheet {
     pub title: String,
     /// Trials in the order in which they were made.
     pub points: Vec<WordLengthPoint>,
-    /// Largest ratio of the noise.
+    /// Largest ratio of the noise, and of that in binary64 to it.
     pub arw_ratio_max: f64,
     /// Largest change of the delay, us.
     pub delay_change_max_us: f64,
@@ -107,18 +107,15 @@ fn picture(sheet: &WordLengthSheet) -> Option<Picture> {
     Some(picture)
 }
 
-/// Noise over that in binary64, from the least up to some limits above one.
+/// Noise over that in binary64, to some limits on both sides.
 fn noise(sheet: &WordLengthSheet) -> Part<'_> {
-    let figure: Figure = &|point| point.arw_ratio;
     let room = (sheet.arw_ratio_max - 1.0).abs().max(1e-3);
-    let lowest = sheet.points.iter().filter_map(figure).fold(1.0, f64::min);
-    let low = lowest - room;
-    let range = (low, 1.0 + LIMITS_SHOWN * room);
+    let range = (1.0 - LIMITS_SHOWN * room, 1.0 + LIMITS_SHOWN * room);
     Part {
-        figure,
+        figure: &|point| point.arw_ratio,
         y: Axis::linear(range, 0.0, "ARW over binary64"),
         range,
-        limits: vec![sheet.arw_ratio_max],
+        limits: vec![sheet.arw_ratio_max.recip(), sheet.arw_ratio_max],
     }
 }
 
