@@ -309,6 +309,16 @@ fn odd_tables() -> Vec<Odd> {
             &[],
             200.0,
         ),
+        odd(
+            "the same with blanks, marks and a separator about its cells",
+            units.replacen(
+                "\n0.010,",
+                "\n time , omega\n\"[s]\",\"[mdeg/s]\"\ntime,omega,\n0.010,",
+                1,
+            ),
+            &[],
+            200.0,
+        ),
         odd("a preamble of keys and a row of units", units, &[], 200.0),
         odd(
             "rows that are wrapped, without a heading",

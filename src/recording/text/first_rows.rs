@@ -8,31 +8,48 @@ use crate::recording::layout::{HeadLine, Layout, LayoutError, is_number};
 /// Rows by which columns are told apart.
 const SAMPLE_ROWS: usize = 50;
 
-/// Heading and row of units as they stand there, unless they could be samples.
-pub(super) fn heads(layout: &Layout, head: &[HeadLine]) -> Vec<String> {
-    let are_words = |text: &str| {
-        let cells = layout.delimiter().cells(text);
-        let is_word = |cell: &str| !is_number(cell, layout.decimal) && !is_missing(cell);
-        cells.into_iter().any(is_word)
-    };
-    let lines = [layout.heading_line, layout.units_line];
-    head.iter()
-        .filter(|line| lines.contains(&Some(line.number)))
-        .map(|line| line.text.trim().to_owned())
-        .filter(|text| are_words(text))
-        .collect()
+/// Cells of the heading and of the row of units, unless they could be samples.
+#[derive(Clone, Debug)]
+pub(super) struct Heads(Vec<Vec<String>>);
+
+impl Heads {
+    pub(super) fn of(layout: &Layout, head: &[HeadLine]) -> Self {
+        let is_word = |cell: &&str| !is_number(cell, layout.decimal) && !is_missing(cell);
+        let lines = [layout.heading_line, layout.units_line];
+        let lines = head
+            .iter()
+            .filter(|line| lines.contains(&Some(line.number)));
+        let cells = lines.map(|line| layout.delimiter().first_cells(&line.text));
+        let cells = cells.filter(|cells| cells.iter().any(is_word));
+        Self(
+            cells
+                .map(|cells| cells.into_iter().map(str::to_owned).collect())
+                .collect(),
+        )
+    }
+
+    /// Whether a line is one of them again, whatever blanks, quotation marks and empty cells stand about its cells.
+    pub(super) fn hold(&self, layout: &Layout, text: &str) -> bool {
+        let begin = text.trim_start().trim_start_matches('"').trim_start();
+        let is_again = |head: &Vec<String>| {
+            // Most lines begin otherwise, and need not be cut.
+            head.first().is_some_and(|first| begin.starts_with(first))
+                && layout.delimiter().cells_up_to(text, head.len()) == *head
+        };
+        self.0.iter().any(is_again)
+    }
 }
 
 /// The columns to read, by the names of the layout and its first rows.
 pub(super) fn chosen(
     layout: &Layout,
     head: &[HeadLine],
-    heads: &[String],
+    heads: &Heads,
     wanted: &Wanted<'_>,
 ) -> Result<Chosen, LayoutError> {
     let rows = head.iter().filter(|line| {
         let text = line.text.trim();
-        let is_row = !layout.is_comment(text) && heads.iter().all(|head| head != text);
+        let is_row = !layout.is_comment(text) && !heads.hold(layout, text);
         line.number >= layout.first_row_line && is_row
     });
     let cells = rows.take(SAMPLE_ROWS).flat_map(|line| {

@@ -3,7 +3,7 @@
 use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
-use super::first_rows::{chosen, heads};
+use super::first_rows::{Heads, chosen};
 use super::head::{HEAD_LINES, head};
 use super::lines::{Delimiter, Lines, TextError, is_missing, shown};
 use super::plain::{PlainRows, Role};
@@ -90,7 +90,7 @@ impl Rows {
         };
         layout.encoding = encoding;
         let said = layout.heading_line.unwrap_or(layout.first_row_line);
-        let heads = heads(&layout, &head);
+        let heads = Heads::of(&layout, &head);
         let chosen = chosen(&layout, &head, &heads, wanted)
             .map_err(|error| LogError::at(path, Place::Line(said), error))?;
         head.reverse();
@@ -227,8 +227,8 @@ struct Table {
     words: Vec<(usize, String)>,
     /// Values of a record that is spread over lines.
     record: Vec<String>,
-    /// Heading and row of units as they stand there.
-    heads: Vec<String>,
+    /// Heading and row of units.
+    heads: Heads,
     /// Rows that were read and taken away.
     taken: usize,
     /// What stands between plain numbers, if it is one byte; a blank stands for any number of them.
@@ -246,7 +246,7 @@ enum RowError {
 }
 
 impl Table {
-    fn new(layout: Layout, heads: Vec<String>, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
+    fn new(layout: Layout, heads: Heads, chosen: Chosen, wanted: &Wanted<'_>) -> Self {
         let mut roles = vec![Role::Nothing; layout.width()];
         for (position, index) in chosen.data.iter().enumerate() {
             roles[*index] = Role::Data(position);
@@ -315,7 +315,7 @@ impl Table {
         if self.seen() > 0 {
             let between = &mut self.columns.lines_between;
             between.empty.extend(empty_before);
-            if self.heads.iter().any(|head| head == text.trim()) {
+            if self.heads.hold(&self.layout, text) {
                 between.headings.extend(Some(number));
                 return Ok(());
             }
