@@ -234,6 +234,12 @@ fn what_is_wrong_with_a_scenario_of_a_log_is_said_before_it_runs() {
             format!("{LOG}{value}\n"),
         );
     }
+    for value in ["scale = 0.0", "rows = \"900000:\"", "from_s = 1e6"] {
+        refuse(
+            "a value that the log does not bear",
+            format!("{LOG}{value}\n"),
+        );
+    }
     refuse("a swing too fast", format!("{LOG}motion = \"swing:30\"\n"));
     transcript.check();
 }
