@@ -188,6 +188,13 @@ impl PlainRows<'_> {
 /// What stands behind the separator of a cell and the blanks around it; nothing where there is no separator.
 #[inline]
 fn behind_cell(rest: &[u8], separator: u8) -> Option<&[u8]> {
+    // Most logs have no blanks.
+    if let [first, behind @ ..] = rest
+        && *first == separator
+        && !matches!(behind, [b' ' | b'\t', ..])
+    {
+        return Some(behind);
+    }
     let blanks = blanks_at_start(rest, separator);
     if separator == b' ' {
         return (blanks > 0).then(|| &rest[blanks..]);
@@ -199,6 +206,9 @@ fn behind_cell(rest: &[u8], separator: u8) -> Option<&[u8]> {
 /// What stands behind the end of a row and the blanks before it; nothing where that is not the end.
 #[inline]
 fn behind_row(rest: &[u8], separator: u8) -> Option<&[u8]> {
+    if let [b'\n', behind @ ..] = rest {
+        return Some(behind);
+    }
     match &rest[blanks_at_start(rest, separator)..] {
         [b'\n', behind @ ..] | [b'\r', b'\n', behind @ ..] => Some(behind),
         _ => None,
