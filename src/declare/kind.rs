@@ -15,6 +15,8 @@ pub enum Kind {
     Boolean,
     /// Any text.
     Text,
+    /// Text of a form of its own, with what a text lacks for it.
+    Spelled(fn(&str) -> Option<String>),
     /// Any text, also none.
     FreeText,
     /// Name of a scenario or channel.

@@ -15,5 +15,6 @@ mod table;
 pub use key::{Key, Keys};
 pub use kind::{Content, DIGEST_DIGITS, Integers, Kind, Limits, Range, Shape};
 pub use row::{Group, Presence, Row, Successor, Table, Told};
+pub(crate) use setting::spelled;
 pub use setting::{FromLiteral, Reference, Setting};
 pub(crate) use table::{alternatives, renamed, table};

@@ -85,6 +85,42 @@ macro_rules! as_written {
 }
 as_written!(f64 [f64; 3] u32 u64 bool);
 
+/// Gives a type that has a form as text, by `FromStr` and `Display`, what a key of a file needs.
+macro_rules! spelled {
+    ($type:ty) => {
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = String::deserialize(deserializer)?;
+                text.parse().map_err(serde::de::Error::custom)
+            }
+        }
+
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.collect_str(self)
+            }
+        }
+
+        impl $crate::declare::Setting for $type {
+            const SHAPE: $crate::declare::Shape = $crate::declare::Shape::Plain(
+                $crate::declare::Content::Value($crate::declare::Kind::Spelled(|text| {
+                    text.parse::<Self>().err().map(|error| error.to_string())
+                })),
+            );
+            const LIST: $crate::declare::Shape = $crate::declare::Shape::Impossible;
+        }
+
+        impl $crate::declare::FromLiteral<&str> for $type {
+            fn from_literal(literal: &str) -> Self {
+                literal
+                    .parse()
+                    .expect("an example has the form of its type")
+            }
+        }
+    };
+}
+pub(crate) use spelled;
+
 impl FromLiteral<&str> for String {
     fn from_literal(literal: &str) -> Self {
         literal.to_owned()

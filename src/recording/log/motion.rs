@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
+use crate::declare::spelled;
 
 /// Swing frequencies that a log can hold, Hz: one cycle in eleven days to a quarter of the fastest rate.
 const SWING_HZ: (f64, f64) = (1e-6, 2.5e8);
@@ -62,26 +62,4 @@ impl fmt::Display for LogMotion {
     }
 }
 
-impl<'de> serde::Deserialize<'de> for LogMotion {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = String::deserialize(deserializer)?;
-        text.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-impl serde::Serialize for LogMotion {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl Setting for LogMotion {
-    const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
-    const LIST: Shape = Shape::Impossible;
-}
-
-impl FromLiteral<&str> for LogMotion {
-    fn from_literal(literal: &str) -> Self {
-        literal.parse().expect("an example is a motion")
-    }
-}
+spelled!(LogMotion);

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::str::FromStr;
 
-use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
+use crate::declare::spelled;
 
 /// Rows `first:last` from 1 on, either of which may be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,29 +65,7 @@ impl fmt::Display for LogRows {
     }
 }
 
-impl<'de> serde::Deserialize<'de> for LogRows {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = String::deserialize(deserializer)?;
-        text.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-impl serde::Serialize for LogRows {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl Setting for LogRows {
-    const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
-    const LIST: Shape = Shape::Impossible;
-}
-
-impl FromLiteral<&str> for LogRows {
-    fn from_literal(literal: &str) -> Self {
-        literal.parse().expect("an example names rows")
-    }
-}
+spelled!(LogRows);
 
 #[cfg(test)]
 mod tests {

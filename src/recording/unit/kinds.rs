@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::spelling::{Spelled, spelled};
-use crate::declare::{Content, FromLiteral, Kind, Setting, Shape};
+use crate::declare::spelled;
 use crate::units::{
     MICRO, MILLI, NANO, SECONDS_PER_HOUR, arcsec_to_rad, deg_to_rad, rad_per_s_to_deg_per_h,
     rad_to_deg,
@@ -266,29 +266,7 @@ impl TryFrom<String> for LogUnit {
     }
 }
 
-impl<'de> serde::Deserialize<'de> for LogUnit {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = String::deserialize(deserializer)?;
-        text.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-impl serde::Serialize for LogUnit {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl Setting for LogUnit {
-    const SHAPE: Shape = Shape::Plain(Content::Value(Kind::Text));
-    const LIST: Shape = Shape::Impossible;
-}
-
-impl FromLiteral<&str> for LogUnit {
-    fn from_literal(literal: &str) -> Self {
-        literal.parse().expect("an example is a unit")
-    }
-}
+spelled!(LogUnit);
 
 #[cfg(test)]
 mod tests {

@@ -88,7 +88,11 @@ pub(crate) fn check_leaf(key: &Key, shown: &str, node: &Node) -> Result<(), Faul
             check_parameters(key, shown, table)?;
             true
         }
-        (Kind::Text | Kind::File, Value::Text(text)) => !text.trim().is_empty(),
+        (Kind::Spelled(lack), Value::Text(text)) if !text.trim().is_empty() => match lack(text) {
+            Some(why) => return Err(no_such_form(shown, &node.value, &why).into()),
+            None => true,
+        },
+        (Kind::Text | Kind::Spelled(_) | Kind::File, Value::Text(text)) => !text.trim().is_empty(),
         (Kind::FreeText, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => true,
         (_, value) => return Err(wrong_type(key, shown, value).into()),
     };
@@ -262,6 +266,12 @@ fn is_digest(text: &str) -> bool {
     text.len() == DIGEST_DIGITS && text.bytes().all(is_digit)
 }
 
+/// The complaint about a text that has not the form of its key.
+fn no_such_form(shown: &str, value: &Value, why: &str) -> String {
+    let text = value.to_toml();
+    format!("{shown} = {}: {why}", excerpt(&text))
+}
+
 /// The complaint about a value outside the allowed ones.
 fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
     let text = value.to_toml();
@@ -279,7 +289,7 @@ fn out_of_range(key: &Key, shown: &str, value: &Value) -> String {
             "{shown} = {text} is not a valid name: allowed {}",
             key.allowed()
         ),
-        (Kind::Text, _) => format!("{shown} = {text} is empty: expected text"),
+        (Kind::Text | Kind::Spelled(_), _) => format!("{shown} = {text} is empty: expected text"),
         _ => format!(
             "{shown} = {} is out of range: allowed {}",
             key.with_unit(&text),

@@ -153,7 +153,9 @@ fn made_up(key: &Key, variant: Variant) -> Value {
             texts(vec!["raw.mean_deg_per_h".to_owned(); count])
         }
         Kind::Name => Value::Text(format!("stand-in-{count}")),
-        Kind::Text | Kind::FreeText | Kind::File => Value::Text(format!("stand-in {count}")),
+        Kind::Text | Kind::Spelled(_) | Kind::FreeText | Kind::File => {
+            Value::Text(format!("stand-in {count}"))
+        }
         Kind::Digest => Value::Text("0".repeat(DIGEST_DIGITS)),
         Kind::EmptyTable | Kind::Matrix | Kind::Parameters => Table::new().into(),
     }

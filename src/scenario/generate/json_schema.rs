@@ -148,7 +148,7 @@ pub(in crate::scenario::generate) fn leaf(key: &Key) -> Value {
             schema
         }
         Kind::Boolean => json!({"type": "boolean"}),
-        Kind::Text | Kind::File => json!({"type": "string", "minLength": 1}),
+        Kind::Text | Kind::Spelled(_) | Kind::File => json!({"type": "string", "minLength": 1}),
         Kind::Digest => {
             json!({"type": "string", "pattern": format!("^[0-9a-f]{{{DIGEST_DIGITS}}}$")})
         }

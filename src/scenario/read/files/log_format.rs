@@ -12,7 +12,6 @@ use crate::scenario::document::setting::Setting;
 use crate::scenario::document::source::{Label, Mark, Sources, shown_path};
 use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
-use crate::scenario::message::excerpt::excerpt;
 use crate::scenario::message::suggest::unknown_in_table;
 use crate::scenario::read::input;
 
@@ -123,8 +122,6 @@ enum KeyError {
     Unknown(String),
     #[error(transparent)]
     Value(#[from] Fault),
-    #[error(transparent)]
-    Spelling(#[from] SpellingError),
 }
 
 /// Checks one value of the table; `shown` is what the user calls its key.
@@ -133,26 +130,5 @@ fn check(name: &str, shown: &str, node: &Node) -> Result<(), KeyError> {
         let known = keys().iter().map(|key| key.path);
         return Err(KeyError::Unknown(unknown_in_table(shown, name, known)));
     };
-    check_leaf(key, shown, node)?;
-    Ok(check_spelling(name, shown, node)?)
-}
-
-/// A value that its key does not know.
-#[derive(Debug, thiserror::Error)]
-#[error("{shown} = {value}: {why}")]
-pub(super) struct SpellingError {
-    shown: String,
-    value: String,
-    why: serde::de::value::Error,
-}
-
-/// Checks that the key of the table knows a value, as one of its words or in its form.
-pub(super) fn check_spelling(name: &str, shown: &str, node: &Node) -> Result<(), SpellingError> {
-    let alone = Table::from([(name.to_owned(), node.clone())]);
-    let read = from_table::<LogFormat>(&alone);
-    read.map(|_| ()).map_err(|why| SpellingError {
-        shown: shown.to_owned(),
-        value: excerpt(&node.value.to_toml()).to_string(),
-        why,
-    })
+    Ok(check_leaf(key, shown, node)?)
 }

@@ -9,7 +9,6 @@ use crate::scenario::document::source::{Mark, Sources};
 use crate::scenario::document::tree::{Node, Table, Value};
 use crate::scenario::message::error::ScenarioError;
 use crate::scenario::message::excerpt::bounded;
-use crate::scenario::read::files::log_format::check_spelling;
 use crate::scenario::read::files::named_files::{LOG as TABLE, NamedFile};
 use crate::scenario::read::files::temperature_source::{check_axis, load_log_temperature};
 use crate::scenario::read::resolved::Resolved;
@@ -43,10 +42,6 @@ pub(crate) fn read_into(
     });
     let complain = |mark: Mark, message: String| sources.error(mark, message);
     let table = node.as_table().cloned().unwrap_or_default();
-    for (name, node) in &table {
-        check_spelling(name, &format!("{TABLE}.{name}"), node)
-            .map_err(|error| complain(node.mark.unwrap_or(mark), error.to_string()))?;
-    }
     let format: LogFormat =
         from_table(&table).map_err(|error| complain(mark, format!("{TABLE}: {error}")))?;
     let Some(file) = named.iter().find(|file| file.key == FILE_KEY) else {
