@@ -114,9 +114,17 @@ impl RunList {
 
     /// Indices of what shard `index` (from 1) of `count` runs.
     pub(super) fn dealt(&self, index: u32, count: u32) -> impl Iterator<Item = usize> + use<> {
-        let (first, step) = (index as usize - 1, count as usize);
-        (first..self.units.len()).step_by(step)
+        dealt(0..self.units.len(), index, count)
     }
+}
+
+/// What shard `index` (from 1) of `count` gets of what there is to run.
+pub(super) fn dealt<T>(
+    all: impl Iterator<Item = T>,
+    index: u32,
+    count: u32,
+) -> impl Iterator<Item = T> {
+    all.skip(index as usize - 1).step_by(count as usize)
 }
 
 /// Runs that are entered one after the other, to become a list.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use super::file::Selected;
-use super::list::RunList;
+use super::list::{RunList, dealt};
 use crate::experiment::build::{BUILD, VERSION};
 
 /// How such a file begins.
@@ -80,8 +80,7 @@ impl PlanFile {
     /// Folders of what a shard runs, from 1.
     #[must_use]
     pub fn folders_of(&self, shard: u32) -> BTreeSet<String> {
-        let lines = self.list.lines().skip(shard.saturating_sub(1) as usize);
-        let own = lines.step_by(self.shards as usize);
+        let own = dealt(self.list.lines(), shard, self.shards);
         own.map(|line| folder(line).to_owned()).collect()
     }
 
