@@ -1,10 +1,10 @@
 //! The AXI4-Stream ports of an export, around the top level of any kind.
 
-/// Handshakes and flags, the same for every filter.
-pub(super) const PORTS: (&str, &str) = ("axi_stream.v", include_str!("rtl/axi_stream.v"));
-
-/// Testbench of the stream ports of any filter.
-pub(super) const BENCH: (&str, &str) = ("axis_bench.v", include_str!("rtl/axis_bench.v"));
+/// Handshakes and flags, and their testbench: the same for every filter.
+pub(super) const SOURCES: [(&str, &str); 2] = [
+    ("axi_stream.v", include_str!("rtl/axi_stream.v")),
+    ("axis_bench.v", include_str!("rtl/axis_bench.v")),
+];
 
 /// What the stream ports must know of a top level.
 #[derive(Clone, Copy, Debug)]

@@ -138,8 +138,7 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
 pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_fixed_vectors(dir, export)?;
     let kind = export.config.as_pipeline().kind();
-    let streams = [axis::PORTS, axis::BENCH];
-    for (name, text) in SOURCES.iter().chain(&streams).chain(kind.sources) {
+    for (name, text) in SOURCES.iter().chain(&axis::SOURCES).chain(kind.sources) {
         files.push(write_text(dir, name, text)?);
     }
     let formats = export.config.as_pipeline().tap_formats();
@@ -243,8 +242,7 @@ mod tests {
         for kind in FIXED_KINDS {
             let readme = readme(kind);
             let words = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-            let streams = [axis::PORTS, axis::BENCH];
-            for (name, _) in SOURCES.iter().chain(&streams).chain(kind.sources) {
+            for (name, _) in SOURCES.iter().chain(&axis::SOURCES).chain(kind.sources) {
                 assert!(words.contains(name), "{name}");
             }
             for (code, state) in kind.states.iter().enumerate() {

@@ -96,7 +96,7 @@ pub fn write_rtl_parts<F: Fp>(
                 .map(|(_, clocks)| clocks),
         };
         files.push(write_text(dir, &ports.file(), &ports.verilog())?);
-        for (name, text) in [axis::PORTS, axis::BENCH] {
+        for (name, text) in axis::SOURCES {
             files.push(write_text(dir, name, text)?);
         }
         if let Some(text) = top_samples(top) {
