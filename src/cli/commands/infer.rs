@@ -165,12 +165,5 @@ fn fill(inference: &Inference, place: Place, text: &str, json: &str) -> Result<(
     let pictures = infer_pictures(&sheet);
     let page = infer_page(&sheet, &pictures, &names);
     let own = [("infer.txt", text), ("infer.json", json), (PAGE, &page)];
-    let own = own.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let files = own.into_iter().chain(pictures.drawn).chain(scenarios);
-    let files: Vec<(String, String)> = files.collect();
-    place.fill_with(&files)?;
-    for note in &pictures.notes {
-        output::talk(&format!("note: {note}"));
-    }
-    Ok(())
+    place.fill_with(&own, &pictures, &scenarios)
 }

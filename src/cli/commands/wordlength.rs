@@ -56,8 +56,9 @@ pub(in crate::cli) fn wordlength(options: &WordLengthOptions) -> io::Result<Exit
             plan.resolved().scenario.name,
             options.name
         );
-        let sheet = sheet(&found, title, limits);
-        if let Err(exit) = fill(place, &sheet, &text, &json) {
+        let pictures = word_length_pictures(&sheet(&found, title, limits));
+        let own = [("wordlength.txt", &*text), ("wordlength.json", &*json)];
+        if let Err(exit) = place.fill_with(&own, &pictures, &[]) {
             return Ok(exit);
         }
     }
@@ -81,26 +82,14 @@ fn sheet(found: &WordLengths, title: String, limits: WordLengthLimits) -> WordLe
         is_pareto: found.is_pareto(trial),
         is_best: best.is_some_and(|best| std::ptr::eq(best, trial)),
     });
+    let ratios = limits.arw_ratios();
     WordLengthSheet {
         title,
         points: points.collect(),
-        arw_ratio_max: limits.arw_ratio_max,
+        arw_ratios: [*ratios.start(), *ratios.end()],
         delay_change_max_us: limits.delay_change_max_us,
         filtered_s: found.filtered_s,
     }
-}
-
-/// Fills the output folder: the trials and their picture.
-fn fill(place: Place, sheet: &WordLengthSheet, text: &str, json: &str) -> Result<(), Exit> {
-    let pictures = word_length_pictures(sheet);
-    let own = [("wordlength.txt", text), ("wordlength.json", json)];
-    let own = own.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let files: Vec<(String, String)> = own.into_iter().chain(pictures.drawn).collect();
-    place.fill_with(&files)?;
-    for note in &pictures.notes {
-        output::talk(&format!("note: {note}"));
-    }
-    Ok(())
 }
 
 fn text(found: &WordLengths, name: &str) -> String {

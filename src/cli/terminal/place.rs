@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::terminal::exit::Exit;
 use crate::cli::terminal::output;
+use crate::report::Pictures;
 use crate::store::{OutputFolder, SingleFile, StoreError, StoreOptions, holds_result};
 
 /// A path with its links resolved as far as it exists.
@@ -104,16 +105,28 @@ impl<'a> Place<'a> {
             .map_err(|error| refused(&error))
     }
 
-    /// Takes the folder, if there is one, and fills it with files: name and text of each.
-    pub(in crate::cli) fn fill_with(self, files: &[(String, String)]) -> Result<(), Exit> {
+    /// Takes the folder, if there is one, and fills it with files, name and text of each, and pictures; says
+    /// what is left out of these.
+    pub(in crate::cli) fn fill_with(
+        self,
+        own: &[(&str, &str)],
+        pictures: &Pictures,
+        more: &[(String, String)],
+    ) -> Result<(), Exit> {
+        let made = pictures.drawn.iter().chain(more);
+        let made = made.map(|(name, text)| (name.as_str(), text.as_str()));
         self.fill(|folder| {
             let staged = folder.stage()?;
-            for (path, text) in files {
+            for (path, text) in own.iter().copied().chain(made) {
                 staged.write(path, text.as_bytes())?;
             }
             staged.seal_plainly()?;
             staged.put_files_in_place()
-        })
+        })?;
+        for note in &pictures.notes {
+            output::talk(&format!("note: {note}"));
+        }
+        Ok(())
     }
 }
 

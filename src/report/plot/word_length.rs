@@ -45,8 +45,8 @@ pub struct WordLengthSheet {
     pub title: String,
     /// Trials in the order in which they were made.
     pub points: Vec<WordLengthPoint>,
-    /// Largest ratio of the noise, and of that in binary64 to it.
-    pub arw_ratio_max: f64,
+    /// Ratios of the noise to that in binary64 that words may have.
+    pub arw_ratios: [f64; 2],
     /// Largest change of the delay, us.
     pub delay_change_max_us: f64,
     /// Time that every trial filtered, s.
@@ -109,13 +109,13 @@ fn picture(sheet: &WordLengthSheet) -> Option<Picture> {
 
 /// Noise over that in binary64, to some limits on both sides.
 fn noise(sheet: &WordLengthSheet) -> Part<'_> {
-    let room = (sheet.arw_ratio_max - 1.0).abs().max(1e-3);
+    let room = (sheet.arw_ratios[1] - 1.0).abs().max(1e-3);
     let range = (1.0 - LIMITS_SHOWN * room, 1.0 + LIMITS_SHOWN * room);
     Part {
         figure: &|point| point.arw_ratio,
         y: Axis::linear(range, 0.0, "ARW over binary64"),
         range,
-        limits: vec![sheet.arw_ratio_max.recip(), sheet.arw_ratio_max],
+        limits: sheet.arw_ratios.into(),
     }
 }
 
