@@ -5,9 +5,9 @@
 //! nanoseconds and know no decimals of a count, which is why dates are read here as well.
 
 use super::unit::TimeUnit;
-use crate::recording::layout::{is_number, plain_spelling, words::DecimalSign};
+use crate::recording::layout::{finite_in, is_number, plain_spelling, words::DecimalSign};
 use crate::recording::text::decimal::Decimal;
-use crate::recording::text::lines::{finite, shown};
+use crate::recording::text::lines::{NumberError, shown};
 
 /// Ticks of a second, or of a sample.
 pub(in crate::recording) const TICKS: i128 = 1_000_000_000_000;
@@ -33,6 +33,10 @@ pub(in crate::recording) enum StampError {
     Number(#[from] crate::recording::text::lines::NumberError),
     #[error("`{0}` is no date or time of day: expected one as 2024-03-01T12:00:00.005Z")]
     Date(String),
+    #[error(
+        "`{0}` is neither a number nor a date or time of day: expected one as 2024-03-01T12:00:00.005Z"
+    )]
+    Neither(String),
     #[error("{0} is beyond the times that a clock shows")]
     Beyond(String),
 }
@@ -67,7 +71,10 @@ impl Stamp {
                 shown(cell)
             )));
         }
-        let number = finite(&spelled)?;
+        let number = finite_in(cell, decimal).map_err(|error| match error {
+            NumberError::Word(cell) if is_like_date(&cell) => StampError::Neither(cell),
+            error => error.into(),
+        })?;
         Self::of_number(number, unit).ok_or_else(|| StampError::Beyond(shown(cell)))
     }
 
@@ -192,6 +199,16 @@ fn rounded(number: i128, over: i128) -> i128 {
     whole + i128::from(rest >= over - rest && rest > 0)
 }
 
+/// Whether a cell that is no number has the signs that dates and times of day have, in each of its words.
+pub(in crate::recording) fn is_like_date(cell: &str) -> bool {
+    let is_part = |word: &str| {
+        word.contains(':')
+            || word.matches(['/', '-', '.']).count() > 1
+            || word.chars().all(char::is_alphabetic)
+    };
+    cell.starts_with(|it: char| it.is_ascii_digit()) && cell.split_whitespace().all(is_part)
+}
+
 /// Whether a cell is a date, a time of day or both.
 pub(in crate::recording) fn is_date(cell: &str) -> bool {
     date(cell).is_some()
@@ -203,7 +220,7 @@ fn date(cell: &str) -> Option<Stamp> {
     if !bytes.first()?.is_ascii_digit() {
         return None;
     }
-    if bytes.get(2) == Some(&b':') {
+    if bytes.iter().take(3).any(|byte| *byte == b':') {
         return time_of_day(bytes);
     }
     let (days, behind) = day(bytes)?;
@@ -214,7 +231,7 @@ fn date(cell: &str) -> Option<Stamp> {
             resolution: DAY,
         }),
         [b'T' | b't' | b' ' | b'_', time @ ..] => {
-            let time = time_of_day(time)?;
+            let time = time_of_day(time.trim_ascii_start())?;
             Some(Stamp {
                 ticks: midnight + time.ticks,
                 ..time
@@ -279,10 +296,12 @@ fn number(digits: &[u8]) -> Option<i64> {
 
 /// Hours, minutes, seconds with decimals, and the zone.
 fn time_of_day(bytes: &[u8]) -> Option<Stamp> {
-    let [h0, h1, b':', m0, m1, behind @ ..] = bytes else {
+    let (([tens, ones, b':', m0, m1, behind @ ..], _) | ([ones, b':', m0, m1, behind @ ..], tens)) =
+        (bytes, &b'0')
+    else {
         return None;
     };
-    let (hours, minutes) = (number(&[*h0, *h1])?, number(&[*m0, *m1])?);
+    let (hours, minutes) = (number(&[*tens, *ones])?, number(&[*m0, *m1])?);
     if hours > 24 || minutes > 59 {
         return None;
     }
@@ -325,16 +344,18 @@ fn decimals(bytes: &[u8]) -> Option<(i128, u32, &[u8])> {
     (count > 0).then_some((ticks, count, behind))
 }
 
-/// Ticks by which a zone is ahead.
+/// Ticks by which a zone, behind blanks or none, is ahead.
 fn zone(bytes: &[u8]) -> Option<i128> {
-    let (sign, digits) = match bytes {
-        [] | [b'Z' | b'z'] | [b' ', b'U', b'T', b'C'] => return Some(0),
+    let trimmed = bytes.trim_ascii_start();
+    let (sign, digits) = match trimmed {
+        [] | [b'Z' | b'z'] | b"UTC" | b"GMT" => return Some(0),
         [b'+', digits @ ..] => (1, digits),
         [b'-', digits @ ..] => (-1, digits),
         _ => return None,
     };
     let (hours, minutes) = match digits {
-        [h0, h1] => (number(&[*h0, *h1])?, 0),
+        // Behind a blank so few digits are another number.
+        [h0, h1] if trimmed.len() == bytes.len() => (number(&[*h0, *h1])?, 0),
         [h0, h1, b':', m0, m1] | [h0, h1, m0, m1] => (number(&[*h0, *h1])?, number(&[*m0, *m1])?),
         _ => return None,
     };
@@ -376,6 +397,15 @@ mod tests {
             at("2024-03-01T12:00:00.005Z")
         );
         assert_eq!(at("2024/03/01 12:00:00,005"), at("2024-03-01T12:00:00.005"));
+        for cell in [
+            "2024-03-01  13:00:00.005 +01:00",
+            "2024-03-01 08:30:00.005 -0330",
+            "2024-03-01T12:00:00.005 Z",
+            "2024-03-01 12:00:00.005  UTC",
+            "2024-03-01 12:00:00.005GMT",
+        ] {
+            assert_eq!(at(cell), at("2024-03-01T12:00:00.005"), "{cell}");
+        }
         assert_eq!(at("2024-02-29"), at("2024-03-01") - DAY);
         assert_eq!(at("29.02.2024"), at("2024-02-29"));
         assert_eq!(at("01.03.2024 12:00:00,5"), at("2024-03-01T12:00:00.5"));
@@ -383,6 +413,7 @@ mod tests {
             at("2024-03-01") + at("12:00:00.25"),
             at("2024-03-01T12:00:00.25")
         );
+        assert_eq!(at("9:05:00.25"), at("09:05:00.25"));
         assert_eq!(at("1900-03-01") - at("1900-02-28"), DAY);
         assert_eq!(at("2016-12-31T23:59:60Z"), at("2017-01-01T00:00:00Z"));
         for cell in [
@@ -395,6 +426,10 @@ mod tests {
             "1.5",
             "2024-03/01",
             "29.02.2023",
+            "2024-03-01 12:00:00 -15",
+            "9:5:00",
+            "123:00:00",
+            ":12:00",
             "03.2024",
             "2024-03-01T25:00",
             "",
