@@ -85,6 +85,7 @@ mod log_cases;
 mod log_dwells;
 mod log_layouts;
 mod log_pass;
+mod log_refusals;
 mod log_scenarios;
 mod log_stream;
 mod log_temperature;

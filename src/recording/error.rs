@@ -23,6 +23,8 @@ pub enum LogError {
         place: String,
         /// What is wrong: column, value, unit, what is allowed.
         message: String,
+        /// Key of `[log]`, or option, that asks for what cannot be.
+        key: Option<&'static str>,
     },
 }
 
@@ -32,7 +34,25 @@ impl LogError {
         Self::Content {
             place: path.display().to_string(),
             message: message.to_string(),
+            key: None,
         }
+    }
+
+    /// Key of `[log]`, or option, that asks for what cannot be, if it is one alone.
+    #[must_use]
+    pub fn key(&self) -> Option<&'static str> {
+        match self {
+            Self::Content { key, .. } => *key,
+            Self::Read { .. } => None,
+        }
+    }
+
+    /// The complaint, with the key that asks for what cannot be.
+    pub(crate) fn about(mut self, asking: Option<&'static str>) -> Self {
+        if let Self::Content { key, .. } = &mut self {
+            *key = asking;
+        }
+        self
     }
 
     /// A complaint about a line, counted from 1, or about an element of an array.
@@ -44,6 +64,7 @@ impl LogError {
                 Place::Index(index) => format!("{path}: index {index}"),
             },
             message: message.to_string(),
+            key: None,
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::column::Column;
 use super::error::LogError;
 use super::input::Input;
+use super::layout::Asked;
 use super::layout::columns::Selection;
 use super::log::format::LogFormat;
 use super::log::gaps::Gaps;
@@ -64,15 +65,18 @@ enum PointsError {
 /// [`LogError`]: whatever the file system says, unknown columns, cells that are no number, rates without a unit
 /// or in one of angles, negative standard errors.
 pub fn read_points(path: &Path, format: &PointsFormat) -> Result<RecordedPoints, LogError> {
-    let names = [&format.rate, &format.output]
-        .into_iter()
-        .chain(&format.error);
+    let both = [(&format.rate, "rate"), (&format.output, "output")];
+    let error = format.error.as_ref().map(|name| (name, "error"));
+    let asked = both.into_iter().chain(error).map(|(name, key)| {
+        let key = Some(key);
+        Asked { name, key }
+    });
     let layout = LogFormat::default();
     let columns = table::read(
         path,
         Input::open(path)?,
         &Wanted {
-            columns: Selection::Each(names.map(String::as_str).collect()),
+            columns: Selection::Each(asked.collect()),
             needs_time: false,
             gaps: Gaps::Unsaid,
             format: &layout,

@@ -41,7 +41,7 @@ pub fn try_log_stream(
             return Err(refuse("stopped".to_owned()));
         }
         stream.read(&mut words).map_err(|error| match error {
-            LogError::Content { place, message } => LogTrialError {
+            LogError::Content { place, message, .. } => LogTrialError {
                 file: place,
                 ..refuse(message)
             },

@@ -2,8 +2,12 @@
 
 use super::words::{DecimalSign, Separator};
 use crate::recording::text::lines::Delimiter;
-use crate::recording::text::lines::{NumberError, begins_like_number, finite, is_missing};
-use crate::recording::time::stamp::is_date;
+use crate::recording::text::lines::{NumberError, begins_like_number, finite, is_missing, shown};
+use crate::recording::time::stamp::{is_date, is_like_date};
+
+/// Separators of one character, in the order in which they are looked for.
+pub(super) const CHARACTERS: [Separator; 3] =
+    [Separator::Tab, Separator::Semicolon, Separator::Comma];
 
 /// Whether a cell is a number with this decimal sign.
 pub(in crate::recording) fn is_number(cell: &str, decimal: DecimalSign) -> bool {
@@ -36,6 +40,12 @@ pub(in crate::recording) fn finite_in(
 ) -> Result<f64, NumberError> {
     match decimal {
         DecimalSign::Point => finite(cell),
+        // A point may stand between thousands, or the comma may.
+        DecimalSign::Comma
+            if cell.contains('.') && cell.contains(|it: char| it.is_ascii_digit()) =>
+        {
+            Err(NumberError::DecimalPoint(shown(cell)))
+        }
         DecimalSign::Comma => finite(&plain_spelling(cell, decimal)),
     }
 }
@@ -54,6 +64,7 @@ fn is_whole(cell: &str) -> bool {
         || !begins_like_number(cell)
         // Numbers that were not cut where they should have been have no other letters.
         || cell.contains(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E'))
+        || is_like_date(cell)
 }
 
 /// The separator of lines: the first of tab, semicolon and comma that most of them hold and that leaves
@@ -61,22 +72,40 @@ fn is_whole(cell: &str) -> bool {
 ///
 /// * `decimal`: the sign, if it is given: then a comma separates quoted numbers only.
 pub(super) fn separator_of(lines: &[&str], decimal: Option<DecimalSign>) -> Separator {
-    let candidates = [Separator::Tab, Separator::Semicolon, Separator::Comma];
-    let found = candidates.into_iter().find(|candidate| {
+    let found = CHARACTERS.into_iter().find(|candidate| {
         if *candidate == Separator::Comma
             && decimal == Some(DecimalSign::Comma)
             && !lines.iter().any(|line| line.contains('"'))
         {
             return false;
         }
-        let delimiter = Delimiter::from(*candidate);
-        let cut = lines.iter().map(|line| delimiter.cells(line));
-        let cut: Vec<_> = cut.filter(|cells| cells.len() > 1).collect();
-        let is_clean = |cells: &&Vec<&str>| cells.iter().all(|cell| is_whole(cell));
-        let clean = cut.iter().filter(is_clean).count();
-        2 * cut.len() > lines.len() && 2 * clean >= cut.len()
+        cuts(*candidate, lines)
     });
+    let found = found.or_else(|| CHARACTERS.into_iter().find(|it| stands_alone(*it, lines)));
     found.unwrap_or(Separator::Blanks)
+}
+
+/// Whether a separator stands between blanks in most lines, so that these do not separate.
+fn stands_alone(separator: Separator, lines: &[&str]) -> bool {
+    let Delimiter::Character(character) = Delimiter::from(separator) else {
+        return false;
+    };
+    let mut text = [0; 4];
+    let text = &*character.encode_utf8(&mut text);
+    let with = lines
+        .iter()
+        .filter(|line| line.split(' ').any(|word| word == text));
+    2 * with.count() > lines.len()
+}
+
+/// Whether most lines hold a separator that leaves whole cells.
+pub(super) fn cuts(separator: Separator, lines: &[&str]) -> bool {
+    let delimiter = Delimiter::from(separator);
+    let cut = lines.iter().map(|line| delimiter.cells(line));
+    let cut: Vec<_> = cut.filter(|cells| cells.len() > 1).collect();
+    let is_clean = |cells: &&Vec<&str>| cells.iter().all(|cell| is_whole(cell));
+    let clean = cut.iter().filter(is_clean).count();
+    2 * cut.len() > lines.len() && 2 * clean >= cut.len()
 }
 
 /// What the cells of a text say of its decimal sign.
@@ -87,25 +116,27 @@ pub(super) enum DecimalFound {
     Doubt(String),
 }
 
-/// The decimal sign of rows: a comma if some cells are numbers with a comma and none has a point.
+/// The decimal sign of rows: a comma if more cells are numbers with a comma than with a point.
 pub(super) fn decimal_of(lines: &[&str], separator: Separator) -> DecimalFound {
     let delimiter = Delimiter::from(separator);
     let cells: Vec<&str> = lines
         .iter()
         .flat_map(|line| delimiter.cells(line))
         .collect();
-    let has_point = cells
+    let points = cells
         .iter()
-        .any(|cell| cell.contains('.') && is_number(cell, DecimalSign::Point));
-    let mut commas = cells
+        .filter(|cell| cell.contains('.') && is_number(cell, DecimalSign::Point))
+        .count();
+    let commas: Vec<&str> = cells
         .iter()
+        .copied()
         .filter(|cell| cell.contains(',') && is_number(cell, DecimalSign::Comma))
-        .peekable();
-    match commas.peek().copied() {
-        Some(first) if !has_point => {
-            if commas.all(|cell| may_be_thousands(cell)) {
-                return DecimalFound::Doubt((*first).to_owned());
-            }
+        .collect();
+    let are_thousands = commas.iter().all(|cell| may_be_thousands(cell));
+    match commas[..] {
+        [first, ..] if points == 0 && are_thousands => DecimalFound::Doubt(first.to_owned()),
+        // Of a few numbers with a point, each is told when it is read.
+        [_, ..] if commas.len() > points && !are_thousands => {
             DecimalFound::Sure(DecimalSign::Comma)
         }
         _ => DecimalFound::Sure(DecimalSign::Point),

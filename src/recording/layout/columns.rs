@@ -1,7 +1,7 @@
 //! Which column is what: by name, part of a name or number, and the time by what its heading says.
 
 use super::cells::is_number;
-use super::{Layout, LayoutError};
+use super::{Asked, Layout, LayoutError};
 use crate::recording::log::format::LogFormat;
 use crate::recording::text::lines::{listed, shown};
 use crate::recording::time::stamp::{Stamp, is_date};
@@ -10,6 +10,11 @@ use crate::recording::unit::spelling::{Spelled, name_of_heading};
 
 /// Word that says that a file has no column of the time.
 pub(super) const NO_TIME: &str = "none";
+
+/// Key of the column of the data.
+const COLUMN: &str = "column";
+/// Key of the column of the time.
+const TIME: &str = "time";
 
 /// Words in the heading of a column of time.
 const TIMES: [&str; 16] = [
@@ -58,8 +63,8 @@ const WEEKS: [&str; 3] = ["week", "weeks", "wn"];
 pub(in crate::recording) enum Selection<'a> {
     /// Those that a pattern names, in order; none: the only one beside the time.
     Named(&'a [String]),
-    /// One by each name.
-    Each(Vec<&'a str>),
+    /// One of each.
+    Each(Vec<Asked<'a>>),
 }
 
 /// The columns that are read.
@@ -101,50 +106,69 @@ pub(in crate::recording) fn choose(
         format,
         rows,
     };
-    let named = match selection {
-        Selection::Named(patterns) => patterns
-            .iter()
-            .map(|pattern| chooser.matching(pattern))
-            .collect::<Result<Vec<_>, _>>()?
-            .concat(),
-        Selection::Each(names) => names
-            .iter()
-            .map(|name| chooser.one(name))
-            .collect::<Result<Vec<_>, _>>()?,
-    };
+    let mut named = chooser.named(selection)?;
     let mut chosen = Chosen::default();
     if needs_time {
-        chooser.put_time(&named, &mut chosen)?;
+        let data: Vec<usize> = named.iter().map(|(index, _)| *index).collect();
+        chooser.put_time(&data, &mut chosen)?;
     }
-    let beside = match selection {
-        Selection::Named(_) if needs_time => {
-            format.beside().map(|name| chooser.one(name)).collect()
-        }
-        _ => Ok(Vec::new()),
+    let beside: Vec<Asked<'_>> = match selection {
+        Selection::Named(_) if needs_time => format.beside().collect(),
+        _ => Vec::new(),
     };
-    let beside: Vec<usize> = beside?;
-    chosen.data = match named[..] {
-        [] => vec![chooser.only(&chosen, &beside)?],
-        _ => named,
-    };
-    chosen.data.extend(beside);
-    for (position, index) in chosen.data.iter().enumerate() {
-        if chosen.time.iter().any(|(time, _)| time == index) {
-            return Err(LayoutError::DataIsTime);
-        }
-        if chosen.data[..position].contains(index) {
-            let name = layout.name(*index).unwrap_or_default();
-            return Err(LayoutError::NamedTwice(shown(&name)));
+    let beside = chooser.each(&beside)?;
+    if named.is_empty() {
+        named.push((chooser.only(&chosen, &beside)?, Some(COLUMN)));
+    }
+    named.extend(beside);
+    let times = chosen.time.iter().map(|(index, _)| (*index, Some(TIME)));
+    let times: Vec<ByKey> = times.collect();
+    for (position, (index, key)) in named.iter().enumerate() {
+        let mut others = times.iter().chain(&named[..position]);
+        if let Some((_, other)) = others.find(|(other, _)| other == index) {
+            return Err(LayoutError::NamedTwice {
+                name: shown(&layout.name(*index).unwrap_or_default()),
+                keys: [*other, *key],
+            });
         }
     }
+    chosen.data = named.into_iter().map(|(index, _)| index).collect();
     Ok(chosen)
 }
 
+/// A column, and the key or option that names it.
+type ByKey = (usize, Option<&'static str>);
+
 impl Chooser<'_> {
+    /// The columns that are named, in order.
+    fn named(&self, selection: &Selection<'_>) -> Result<Vec<ByKey>, LayoutError> {
+        let mut named = Vec::new();
+        match selection {
+            Selection::Named(patterns) => {
+                for pattern in *patterns {
+                    let indices = self.matching(pattern)?.into_iter();
+                    named.extend(indices.map(|index| (index, Some(COLUMN))));
+                }
+            }
+            Selection::Each(all) => named = self.each(all)?,
+        }
+        Ok(named)
+    }
+
+    /// One column of each that is asked for.
+    fn each(&self, all: &[Asked<'_>]) -> Result<Vec<ByKey>, LayoutError> {
+        let found = all.iter().map(|asked| Ok((self.one(*asked)?, asked.key)));
+        found.collect()
+    }
+
     /// The columns that a name, a part of one, a number or a pattern with `*` names.
     fn matching(&self, pattern: &str) -> Result<Vec<usize>, LayoutError> {
+        let asked = Asked {
+            name: pattern,
+            key: Some(COLUMN),
+        };
         if !pattern.contains('*') || self.layout.names.iter().any(|name| name == pattern) {
-            return Ok(vec![self.one(pattern)?]);
+            return Ok(vec![self.one(asked)?]);
         }
         let beside_time =
             |index: &usize| !self.layout.names.is_empty() || !self.is_time(*index, &TIMES);
@@ -155,7 +179,7 @@ impl Chooser<'_> {
         });
         let names: Vec<usize> = names.collect();
         if names.is_empty() {
-            return Err(self.unknown(pattern));
+            return Err(self.unknown(asked));
         }
         Ok(names)
     }
@@ -169,8 +193,8 @@ impl Chooser<'_> {
     }
 
     /// Index of the one column that a name, a part of one or a number from 1 names.
-    fn one(&self, wanted: &str) -> Result<usize, LayoutError> {
-        let names = &self.layout.names;
+    fn one(&self, asked: Asked<'_>) -> Result<usize, LayoutError> {
+        let (wanted, names) = (asked.name, &self.layout.names);
         let found = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
             (0..names.len())
                 .filter(|index| is(&names[*index]))
@@ -181,7 +205,7 @@ impl Chooser<'_> {
             [index] => return Ok(index),
             [_, _, ..] => {
                 return Err(LayoutError::Ambiguous {
-                    wanted: wanted.to_owned(),
+                    wanted: asked.into(),
                     count: same.len(),
                 });
             }
@@ -189,9 +213,7 @@ impl Chooser<'_> {
         }
         if let Ok(number) = wanted.parse::<usize>() {
             let known = (1..=self.layout.width()).contains(&number);
-            return known
-                .then(|| number - 1)
-                .ok_or_else(|| self.unknown(wanted));
+            return known.then(|| number - 1).ok_or_else(|| self.unknown(asked));
         }
         let small = wanted.trim().to_lowercase();
         let alike = found(&|name| name.trim().to_lowercase() == small);
@@ -201,11 +223,11 @@ impl Chooser<'_> {
         };
         match alike[..] {
             [index] => Ok(index),
-            [] => Err(self.unknown(wanted)),
+            [] => Err(self.unknown(asked)),
             _ => {
                 let named: Vec<String> = alike.iter().map(|at| names[*at].clone()).collect();
                 Err(LayoutError::AmbiguousPart {
-                    wanted: wanted.to_owned(),
+                    wanted: asked.into(),
                     count: alike.len(),
                     listed: listed(&named),
                 })
@@ -213,9 +235,9 @@ impl Chooser<'_> {
         }
     }
 
-    fn unknown(&self, wanted: &str) -> LayoutError {
+    fn unknown(&self, asked: Asked<'_>) -> LayoutError {
         LayoutError::NoColumn {
-            wanted: wanted.to_owned(),
+            wanted: asked.into(),
             listed: self.listed(),
         }
     }
@@ -231,16 +253,22 @@ impl Chooser<'_> {
 
     /// The column of the data where none was named: the only one beside the time, or the only one of these
     /// whose heading names a unit of a gyro.
-    fn only(&self, chosen: &Chosen, beside: &[usize]) -> Result<usize, LayoutError> {
-        let is_time = |index: &usize| {
-            chosen.time.iter().any(|(time, _)| time == index) || beside.contains(index)
-        };
-        let others: Vec<usize> = (0..self.layout.width()).filter(|it| !is_time(it)).collect();
+    fn only(&self, chosen: &Chosen, beside: &[ByKey]) -> Result<usize, LayoutError> {
+        let times = chosen.time.iter().map(|(index, _)| *index);
+        let taken: Vec<usize> = times
+            .chain(beside.iter().map(|(index, _)| *index))
+            .collect();
+        let others = (0..self.layout.width()).filter(|index| !taken.contains(index));
+        let others: Vec<usize> = others.collect();
         if let [index] = others[..] {
             return Ok(index);
         }
         if others.is_empty() {
-            return Err(LayoutError::TimeAlone);
+            let time = (!chosen.time.is_empty()).then(|| "the time".to_owned());
+            let keys = beside.iter().filter_map(|(_, key)| *key);
+            let beside = keys.map(|key| format!("that of --{}", key.replace('_', "-")));
+            let taken: Vec<String> = time.into_iter().chain(beside).collect();
+            return Err(LayoutError::NoOther(taken.join(" and ")));
         }
         let turns = |index: &&usize| {
             let unit = self.layout.unit(**index);
@@ -269,7 +297,10 @@ impl Chooser<'_> {
             Some([none]) if none == NO_TIME => return Ok(()),
             Some(names) => names
                 .iter()
-                .map(|name| self.one(name))
+                .map(|name| {
+                    let key = Some(TIME);
+                    self.one(Asked { name, key })
+                })
                 .collect::<Result<_, _>>()?,
             None => {
                 chosen.is_time_found = true;

@@ -1,11 +1,12 @@
 //! Finding the layout of a table: separator, decimal sign, width, the columns of numbers, the first row.
 
-use super::cells::{DecimalFound, decimal_of, is_value, separator_of};
+use super::cells::{DecimalFound, cuts, decimal_of, is_value, separator_of};
+use super::error::Cut;
 use super::heading::{Above, HeadLine, above_rows};
 use super::words::{DecimalSign, Separator};
 use super::{Fault, Layout, LayoutError};
 use crate::recording::log::format::LogFormat;
-use crate::recording::text::lines::{Delimiter, is_comment, is_heading, is_missing};
+use crate::recording::text::lines::{Delimiter, is_comment, is_heading, is_missing, shown};
 
 /// Lines at the end of the first ones that tell how rows look.
 const TAIL: usize = 40;
@@ -38,7 +39,13 @@ pub(in crate::recording) fn find(
     if head.last().is_some_and(|last| last.number <= last_above) {
         return Err(Fault {
             line: None,
-            error: LayoutError::NoRowBelow(last_above),
+            error: LayoutError::NoRowBelow {
+                line: last_above,
+                key: match format.heading_line.map(|line| line as usize) == Some(last_above) {
+                    true => "heading_line",
+                    false => "units_line",
+                },
+            },
         });
     }
     let (rows, marks) = match rows(&head, format)? {
@@ -175,7 +182,54 @@ fn rows(head: &[&HeadLine], format: &LogFormat) -> Result<Option<(Rows, Vec<Stri
             }
         },
     };
-    Ok(Some((Rows::of(sample, separator, decimal), marks)))
+    let rows = Rows::of(sample, separator, decimal);
+    check_given(&rows, sample, head, format)?;
+    Ok(Some((rows, marks)))
+}
+
+/// Refuses a separator or a decimal sign that was given where it leaves no numbers, or cells that are none, and
+/// what the lines themselves say does not.
+fn check_given(
+    rows: &Rows,
+    sample: &[&str],
+    head: &[&HeadLine],
+    format: &LogFormat,
+) -> Result<(), Fault> {
+    let is_whole =
+        |rows: &Rows| !rows.numeric.is_empty() && (rows.cells == 1 || cuts(rows.separator, sample));
+    let is_given = format.separator.is_some() || format.decimal.is_some();
+    if !is_given || is_whole(rows) {
+        return Ok(());
+    }
+    let separator = separator_of(sample, None);
+    let DecimalFound::Sure(decimal) = decimal_of(sample, separator) else {
+        return Ok(());
+    };
+    let found = Rows::of(sample, separator, decimal);
+    let is_other = (found.separator, found.decimal) != (rows.separator, rows.decimal);
+    // Blanks within the cells of a line that is cut are no other way to cut it.
+    let is_cut = found.separator == Separator::Blanks
+        && rows.separator != Separator::Blanks
+        && rows.cells > 1;
+    let row = head.iter().find(|line| found.fits(&line.text));
+    let Some(row) = row.filter(|_| is_other && !is_cut && is_whole(&found)) else {
+        return Ok(());
+    };
+    Err(Fault {
+        line: Some(row.number),
+        error: LayoutError::Given {
+            row: shown(row.text.trim()),
+            given: Cut {
+                separator: format.separator,
+                decimal: format.decimal,
+            },
+            found: Cut {
+                separator: Some(separator).filter(|it| *it != rows.separator),
+                decimal: Some(decimal).filter(|it| *it != rows.decimal),
+            },
+            cells: found.cells,
+        },
+    })
 }
 
 /// The last of some lines, half of them at most unless they are few: what stands above the rows is none;

@@ -123,14 +123,14 @@ fn given(
     rows: &Rows,
     format: &LogFormat,
 ) -> Result<Above, Fault> {
-    let line = |number: Option<u32>, option: &'static str| -> Result<Option<Named>, Fault> {
+    let line = |number: Option<u32>, key: &'static str| -> Result<Option<Named>, Fault> {
         let Some(number) = number.filter(|number| *number > 0) else {
             return Ok(None);
         };
         let line = number as usize;
         let fault = |error| Fault { line: None, error };
         let found = before.iter().find(|it| it.number == line);
-        let found = found.ok_or_else(|| fault(LayoutError::NoLine { line, option }))?;
+        let found = found.ok_or_else(|| fault(LayoutError::NoLine { line, key }))?;
         let text = marks.without(found);
         let cells = names_in(text, rows).ok_or_else(|| {
             let got = counted(
@@ -145,8 +145,8 @@ fn given(
         })?;
         Ok(Some((line, cells)))
     };
-    let heading = line(format.heading_line, "--heading-line")?;
-    let units = line(format.units_line, "--units-line")?;
+    let heading = line(format.heading_line, "heading_line")?;
+    let units = line(format.units_line, "units_line")?;
     let named = usize::from(heading.is_some()) + usize::from(units.is_some());
     Ok(Above {
         heading,

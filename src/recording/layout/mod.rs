@@ -18,7 +18,7 @@ mod heading;
 pub(super) mod words;
 
 pub(super) use cells::{finite_in, is_number, plain_spelling};
-pub(super) use error::{Fault, LayoutError};
+pub(super) use error::{Asked, Fault, LayoutError};
 pub(super) use find::{find, last_line_above};
 pub(super) use heading::HeadLine;
 
@@ -108,6 +108,22 @@ impl Layout {
 
     pub(super) fn delimiter(&self) -> Delimiter {
         self.separator.into()
+    }
+
+    /// What a complaint about a cell that is no number says of a separator that would cut it, if one would.
+    pub(super) fn other_cut(&self, cell: &str) -> String {
+        let is_word = cell.contains(|it: char| it.is_alphabetic() && !matches!(it, 'e' | 'E'));
+        let cuts = |other: &Separator| match Delimiter::from(*other) {
+            Delimiter::Character(',') if self.decimal == DecimalSign::Comma => false,
+            Delimiter::Character(character) => cell.contains(character),
+            Delimiter::Blanks => false,
+        };
+        let mut others = cells::CHARACTERS.into_iter().filter(|_| !is_word);
+        let other = others.find(|other| *other != self.separator && cuts(other));
+        other.map_or_else(String::new, |other| {
+            let own = self.separator;
+            format!("; cells were cut by --separator {own}: --separator {other} cuts this one too")
+        })
     }
 
     /// Whether a line, without blanks around it, is a comment.

@@ -3,6 +3,7 @@
 use super::motion::LogMotion;
 use super::rows::LogRows;
 use crate::declare::table;
+use crate::recording::layout::Asked;
 use crate::recording::layout::words::{
     DecimalSign, Encoding, HeadingUnits, MissingWords, Separator, WordKind, WordType,
 };
@@ -115,9 +116,15 @@ table! {
 
 impl LogFormat {
     /// Columns that are read beside the words, in the order in which they stand behind them.
-    pub(in crate::recording) fn beside(&self) -> impl Iterator<Item = &str> {
-        let both = [&self.reference_column, &self.temperature_column];
-        both.into_iter().filter_map(|name| name.as_deref())
+    pub(in crate::recording) fn beside(&self) -> impl Iterator<Item = Asked<'_>> {
+        let both = [
+            (&self.reference_column, "reference_column"),
+            (&self.temperature_column, "temperature_column"),
+        ];
+        both.into_iter().filter_map(|(name, key)| {
+            let (name, key) = (name.as_deref()?, Some(key));
+            Some(Asked { name, key })
+        })
     }
 
     /// What is said of the reference: its unit alone, of which an angle runs on.

@@ -12,6 +12,7 @@ use crate::recording::bounds::{check_sample_rate, check_temperature};
 use crate::recording::column::{Column, Columns};
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
+use crate::recording::layout::Asked;
 use crate::recording::layout::columns::Selection;
 use crate::recording::layout::words::WordKind;
 use crate::recording::npy::{archive, array};
@@ -156,9 +157,14 @@ pub fn read_assembly_log(
     format: &LogFormat,
     columns: &AssemblyColumns<'_>,
 ) -> Result<AssemblyLog, LogError> {
-    let names = columns.gyros.into_iter().chain(columns.temperature);
+    let gyros = columns.gyros.map(|name| (name, "columns"));
+    let temperature = columns.temperature.map(|name| (name, "temperature_column"));
+    let asked = gyros.into_iter().chain(temperature).map(|(name, key)| {
+        let key = Some(key);
+        Asked { name, key }
+    });
     let wanted = Wanted {
-        columns: Selection::Each(names.collect()),
+        columns: Selection::Each(asked.collect()),
         ..wanted_by(format, Gaps::Refused)
     };
     let mut columns = read_wanted(path, &wanted)?;
@@ -259,13 +265,43 @@ fn read_wanted(path: &Path, wanted: &Wanted<'_>) -> Result<Columns, LogError> {
     } else {
         table::read(path, input, wanted)?
     };
-    with_samples(path, columns)
+    with_samples(path, columns, wanted.format)
+}
+
+/// A log without a sample, with what was said of it that may leave it none.
+pub(super) fn no_sample(path: &Path, format: &LogFormat) -> LogError {
+    let skipped = format.skip_lines.filter(|lines| *lines > 0);
+    let skipped = skipped.map(|lines| format!("--skip-lines {lines}"));
+    let encoding = format.encoding.map(|it| format!("--encoding {it}"));
+    let comment = format.comment.as_deref();
+    let comment = comment.map(|mark| format!("--comment {}", shown(mark)));
+    let said = [
+        (skipped, "skip_lines"),
+        (encoding, "encoding"),
+        (comment, "comment"),
+    ];
+    let said = said
+        .into_iter()
+        .filter_map(|(said, key)| Some((said?, key)));
+    let (said, keys): (Vec<String>, Vec<&'static str>) = said.unzip();
+    match said.is_empty() {
+        true => LogError::of_file(path, "holds no sample"),
+        false => LogError::of_file(
+            path,
+            format!("holds no sample, read with {}", said.join(", ")),
+        ),
+    }
+    .about(keys.first().copied())
 }
 
 /// Columns that hold a sample.
-pub(super) fn with_samples(path: &Path, columns: Columns) -> Result<Columns, LogError> {
+pub(super) fn with_samples(
+    path: &Path,
+    columns: Columns,
+    format: &LogFormat,
+) -> Result<Columns, LogError> {
     match columns.rows() {
-        0 => Err(LogError::of_file(path, "holds no sample")),
+        0 => Err(no_sample(path, format)),
         _ => Ok(columns),
     }
 }
@@ -321,9 +357,17 @@ fn with_units(path: &Path, data: &[Column], format: &LogFormat, error: LogError)
         .iter()
         .find_map(|column| Conversion::of(format, column).err());
     match (error, unit) {
-        (LogError::Content { place, message }, Some(unit)) => LogError::Content {
+        (
+            LogError::Content {
+                place,
+                message,
+                key,
+            },
+            Some(unit),
+        ) => LogError::Content {
             place,
             message: format!("{message}; {unit}"),
+            key,
         },
         (LogError::Read { .. }, Some(unit)) => LogError::of_file(path, unit),
         (error, None) => error,
@@ -341,7 +385,7 @@ pub(super) fn log(
     let conversion = Conversion::of(format, &column).map_err(|error| {
         let doubts = spacing.notes.iter().map(|note| format!("; {note}"));
         let message = format!("{error}{}", doubts.collect::<String>());
-        LogError::of_file(path, message)
+        LogError::of_file(path, message).about(error.key())
     })?;
     let mut remarks = spacing.notes.clone();
     remarks.extend(columns.note.clone());
@@ -361,7 +405,7 @@ pub(super) fn log(
         bridges,
     } = words.of(column.values)?;
     if rate_deg_per_h.is_empty() {
-        return Err(LogError::of_file(path, "holds no sample"));
+        return Err(no_sample(path, format));
     }
     Ok(Log {
         file: name.to_string_lossy().into_owned(),

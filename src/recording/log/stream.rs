@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::format::LogFormat;
 use super::gaps::Gaps;
 use super::rates::{Neighbours, rate_of};
-use super::read::{log, logs_of, spacing, wanted_by, with_samples};
+use super::read::{log, logs_of, no_sample, spacing, wanted_by, with_samples};
 use super::record::Log;
 use crate::recording::column::Columns;
 use crate::recording::error::{LogError, Place};
@@ -95,7 +95,7 @@ pub(crate) fn open_keeping(
         None => kept.words,
     };
     if archive::is_archive(&input, format) {
-        let columns = with_samples(path, archive::read(path, &input, &wanted)?)?;
+        let columns = with_samples(path, archive::read(path, &input, &wanted)?, format)?;
         return logs_of(path, columns, &wanted).map(LogSource::Whole);
     }
     if array::is_array(&input, format) {
@@ -106,11 +106,11 @@ pub(crate) fn open_keeping(
         input.let_go_on();
     }
     let Some(mut rows) = Rows::open(path, input, &wanted, HEAD_LINES)? else {
-        return Err(LogError::of_file(path, "holds no sample"));
+        return Err(no_sample(path, format));
     };
     let goes_on = rows.read_up_to(if streams(format) { most } else { usize::MAX })?;
     if !goes_on {
-        let columns = with_samples(path, rows.into_columns())?;
+        let columns = with_samples(path, rows.into_columns(), format)?;
         return logs_of(path, columns, &wanted).map(LogSource::Whole);
     }
     let columns = rows.take();
@@ -156,13 +156,13 @@ pub fn open_live_log(path: &Path, format: &LogFormat) -> Result<LogStream, LogEr
         (columns, Rest::Array(Box::new((words, input))))
     } else {
         let Some(mut rows) = Rows::open(path, input, &wanted, LIVE_HEAD_LINES)? else {
-            return Err(LogError::of_file(path, "holds no sample"));
+            return Err(no_sample(path, format));
         };
         rows.read_head(usize::MAX)?;
         rows.read_up_to(1)?;
         (rows.take(), Rest::Text(Box::new(rows)))
     };
-    let columns = with_samples(path, columns)?;
+    let columns = with_samples(path, columns, format)?;
     let stream = Found::of(path, columns, &wanted)?.with(path, rest);
     Ok(LogStream {
         block: LIVE_BLOCK,
@@ -220,7 +220,7 @@ fn open_array(
     let is_long = heading.plain.rows > most as u64;
     if !is_long || !heading.is_plain_row() || !streams(format) {
         let columns = array::read_behind(path, &heading, input, wanted)?;
-        let columns = with_samples(path, columns)?;
+        let columns = with_samples(path, columns, format)?;
         return logs_of(path, columns, wanted).map(LogSource::Whole);
     }
     array::check_columns(path, &heading.plain, wanted)?;
@@ -232,7 +232,7 @@ fn open_array(
     while goes_on && values.len() < first {
         goes_on = words.read(&mut input, &mut values)?;
     }
-    let columns = with_samples(path, words.columns(values))?;
+    let columns = with_samples(path, words.columns(values), format)?;
     if !goes_on {
         return logs_of(path, columns, wanted).map(LogSource::Whole);
     }
@@ -261,7 +261,7 @@ impl Found {
         let data = std::mem::take(&mut columns.data);
         let spacing = spacing(path, &columns, &data, wanted)?;
         let Some(column) = data.into_iter().next() else {
-            return Err(LogError::of_file(path, "holds no sample"));
+            return Err(no_sample(path, format));
         };
         let conversion = Conversion::of(format, &column);
         let neighbours = Neighbours::of(&column.values);

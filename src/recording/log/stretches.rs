@@ -9,6 +9,7 @@ use super::rows::LogRows;
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
+use crate::recording::layout::Asked;
 use crate::recording::layout::columns::Selection;
 use crate::recording::text::table::{self, Wanted};
 
@@ -20,14 +21,32 @@ const BOUNDS: [&str; 2] = ["from_s", "to_s"];
 enum PartError {
     #[error("--rows {rows} leaves no row: the log has {count}")]
     NoRow { rows: LogRows, count: usize },
-    #[error("no sample lies from {from_s} s on{}: the log ends at {end_s} s", until(*.to_s))]
+    #[error(
+        "no sample lies from {from_s} s on{}, which --from-s, --to-s or --segments asks for: the log ends at \
+         {end_s} s",
+        until(*.to_s)
+    )]
     NoTime { from_s: f64, to_s: f64, end_s: f64 },
     #[error("it says from {from_s} s to {to_s} s: expected stretches that end behind their start")]
     Backwards { from_s: f64, to_s: f64 },
     #[error("its stretches from {0} s on and from {1} s on overlap or are not in order")]
     Overlap(f64, f64),
-    #[error("a part by its time needs a column of the time, or --rate-hz")]
+    #[error(
+        "a part by its time, as --from-s, --to-s or --segments asks for, needs a column of the time, or --rate-hz"
+    )]
     NoClock,
+}
+
+impl PartError {
+    /// Key of `[log]`, or option, that asks for what cannot be.
+    fn key(&self, format: &LogFormat) -> Option<&'static str> {
+        match self {
+            Self::NoRow { .. } => Some("rows"),
+            _ if format.segments.is_some() => Some("segments"),
+            _ if format.from_s.is_some() => Some("from_s"),
+            _ => Some("to_s"),
+        }
+    }
 }
 
 /// The end of a part, if it has one.
@@ -50,7 +69,7 @@ pub(in crate::recording) fn parts(
     count: usize,
     format: &LogFormat,
 ) -> Result<Vec<Range<usize>>, LogError> {
-    let refuse = |error: PartError| LogError::of_file(path, error);
+    let refuse = |error: PartError| LogError::of_file(path, &error).about(error.key(format));
     let rows = match format.rows {
         Some(rows) => rows
             .within(count)
@@ -113,7 +132,7 @@ fn table_of(path: &Path, shown: &str) -> Result<Vec<(f64, f64)>, LogError> {
         path,
         Input::open(path)?,
         &Wanted {
-            columns: Selection::Each(BOUNDS.into()),
+            columns: Selection::Each(BOUNDS.map(|name| Asked { name, key: None }).into()),
             needs_time: false,
             gaps: Gaps::Unsaid,
             format: &format,

@@ -149,7 +149,7 @@ fn read_several(
         &wanted.columns,
         wanted.needs_time,
     )
-    .map_err(|error| LogError::of_file(path, error))?;
+    .map_err(|error| LogError::of_file(path, &error).about(error.key()))?;
     let found = format!("arrays {}", listed(&layout.names));
     let mut gather = Gather::new(path, &layout, chosen, wanted, found);
     let samples_max = u64::try_from(wanted.samples_max).unwrap_or(u64::MAX);

@@ -102,7 +102,7 @@ pub(in crate::recording) fn read_behind(
         let found = format!("records of {}", listed(&layout.names));
         (layout, chosen, found)
     };
-    let chosen = chosen.map_err(|error| LogError::of_file(path, error))?;
+    let chosen = chosen.map_err(|error| LogError::of_file(path, &error).about(error.key()))?;
     let mut gather = Gather::new(path, &layout, chosen, wanted, found);
     let samples_max = u64::try_from(wanted.samples_max).unwrap_or(u64::MAX);
     each_word(path, heading, &mut input, samples_max, &mut |word| {
@@ -125,7 +125,7 @@ pub(in crate::recording) fn check_columns(
     }
     let column = match &wanted.columns {
         Selection::Named(names) => names.first().map(String::as_str),
-        Selection::Each(names) => names.first().copied(),
+        Selection::Each(all) => all.first().map(|asked| asked.name),
     };
     let time = wanted.format.time.iter().flatten().map(String::as_str);
     let mut named = column

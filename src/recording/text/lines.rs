@@ -438,6 +438,10 @@ pub(in crate::recording) enum NumberError {
     NotFinite(f64),
     #[error("`{0}` is not a number: expected a decimal point, or --decimal comma")]
     DecimalComma(String),
+    #[error(
+        "`{0}` has a point, where the decimal sign of these numbers is a comma: expected digits and one comma"
+    )]
+    DecimalPoint(String),
     #[error("`{0}` is not a number")]
     Word(String),
 }

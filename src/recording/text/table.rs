@@ -82,8 +82,10 @@ impl Rows {
         let head = head(&mut lines, wanted.format, head_lines);
         let mut head = head.map_err(|error| fault(path, error))?;
         let at = |fault: Fault| match fault.line {
-            Some(line) => LogError::at(path, Place::Line(line), fault.error),
-            None => LogError::of_file(path, fault.error),
+            Some(line) => {
+                LogError::at(path, Place::Line(line), &fault.error).about(fault.error.key())
+            }
+            None => LogError::of_file(path, &fault.error).about(fault.error.key()),
         };
         let Some(mut layout) = find(&head, wanted.format).map_err(at)? else {
             return Ok(None);
@@ -92,7 +94,7 @@ impl Rows {
         let said = layout.heading_line.unwrap_or(layout.first_row_line);
         let heads = Heads::of(&layout, &head);
         let chosen = chosen(&layout, &head, &heads, wanted)
-            .map_err(|error| LogError::at(path, Place::Line(said), error))?;
+            .map_err(|error| LogError::at(path, Place::Line(said), &error).about(error.key()))?;
         head.reverse();
         let table = Table::new(layout, heads, chosen, wanted);
         Ok(Some(Self {
@@ -338,7 +340,7 @@ impl Table {
         let at = |message: String| LogError::at(path, Place::Line(line), message);
         match error {
             RowError::Memory(error) => failure(path, error),
-            RowError::Layout(error) => at(error.to_string()),
+            RowError::Layout(error) => at(error.to_string()).about(error.key()),
             RowError::Cell(index, message) => {
                 let name = self.layout.name(index);
                 let column = name.map(|name| format!("column {}: ", shown(&name)));
@@ -468,8 +470,8 @@ impl Table {
                     Err(_) if self.is_gap && is_missing(cell) => f64::NAN,
                     Err(error) => {
                         let way_out = match is_missing(cell) {
-                            true => self.gaps.at_number(),
-                            false => "",
+                            true => self.gaps.at_number().to_owned(),
+                            false => self.layout.other_cut(cell),
                         };
                         return Err(CellFault::Content(format!("{error}{way_out}")));
                     }
@@ -479,7 +481,10 @@ impl Table {
             }
             Role::Time(unit) => {
                 let part = Stamp::read(cell, unit, decimal);
-                let part = part.map_err(|error| CellFault::Content(error.to_string()))?;
+                let part = part.map_err(|error| {
+                    let way_out = self.layout.other_cut(cell);
+                    CellFault::Content(format!("{error}{way_out}"))
+                })?;
                 *stamp = stamp.plus(part);
                 Ok(())
             }
@@ -509,7 +514,7 @@ impl Table {
             got: self.record.len(),
             expected: self.layout.width(),
         };
-        Err(LogError::of_file(path, error))
+        Err(LogError::of_file(path, &error).about(error.key()))
     }
 
     /// Refuses a first row that may be a heading some of whose names are numbers: one that has words

@@ -298,7 +298,7 @@ impl<'a> Clock<'a> {
             self.format.rate_hz.unwrap_or_default(),
             shown(&self.time.name),
         );
-        LogError::of_file(self.path, message)
+        LogError::of_file(self.path, message).about(Some("rate_hz"))
     }
 
     /// A counter of samples: the rate is the one that was given.

@@ -58,6 +58,18 @@ pub(in crate::recording) enum UnitError {
     Scale(f64),
 }
 
+impl UnitError {
+    /// Key of `[log]`, or option, that says what cannot be, if one does.
+    pub(in crate::recording) fn key(&self) -> Option<&'static str> {
+        match self {
+            Self::Contradiction { .. } | Self::AngleOfWhat(_) => Some("unit"),
+            Self::RateAsAngle { .. } | Self::AngleAsRate(_) => Some("kind"),
+            Self::Scale(_) => Some("scale"),
+            _ => None,
+        }
+    }
+}
+
 impl Conversion {
     /// What the options say, held against the heading of a column.
     ///

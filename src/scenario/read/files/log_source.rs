@@ -67,9 +67,9 @@ pub(crate) fn read_into(
         false => read_log,
     };
     let log = read(&file.path, &format).map_err(|error| {
+        let asking = error.key().and_then(|key| table.get(key)?.mark);
         let said = in_keys(&error.to_string());
-        let place = of_its_subject(&table, &said).unwrap_or(place);
-        complain(place, format!("{FILE_KEY}: {said}"))
+        complain(asking.unwrap_or(place), format!("{FILE_KEY}: {said}"))
     })?;
     let facts = LogFacts {
         digest: digest_of_log(&log),
@@ -167,13 +167,6 @@ fn in_keys(message: &str) -> String {
         )
     });
     bounded(&said).into_owned()
-}
-
-/// Place of the key of the table that a complaint about the log is of, which it begins with behind the file.
-fn of_its_subject(table: &Table, said: &str) -> Option<Mark> {
-    let is_subject = |name: &str| said.contains(&format!(": {TABLE}.{name} "));
-    let subject = table.iter().find(|(name, _)| is_subject(name));
-    subject.and_then(|(_, node)| node.mark)
 }
 
 impl Resolved {
