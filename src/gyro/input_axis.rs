@@ -55,7 +55,7 @@ table! {
 ///
 /// # Source
 /// Patent CN101221046, equations (1) to (8). Equation (3) itself is not legible there; it follows
-/// without freedom from (6) and (8). Known answers: `tests/assembly.rs`.
+/// without freedom from (6) and (8). Known answers: `tests/calibration/assembly.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputAxis {
     /// Row of `I + K_G + theta_G`: rate sensed per rate about the case axes x, y, z.

@@ -50,6 +50,24 @@ pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
+/// Rust files of a folder and of those below it, in order.
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder)
+        .expect("a folder of sources")
+        .flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.sort();
+    let is_rust = |path: &Path| path.extension().is_some_and(|extension| extension == "rs");
+    let found = paths.into_iter().flat_map(|path| match path.is_dir() {
+        true => rust_files(&path),
+        false => Some(path)
+            .filter(|path| is_rust(path))
+            .into_iter()
+            .collect(),
+    });
+    found.collect()
+}
+
 /// Kinds of filters that the bench makes by itself: those from outside need keys that have no default.
 pub(crate) fn kinds_of_the_bench() -> Vec<&'static str> {
     let rows = FilterKind::TABLE.rows.iter();

@@ -8,7 +8,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::repository;
+use super::{repository, rust_files};
 
 /// One test's section while it is being spoken.
 pub(crate) struct Transcript {
@@ -192,15 +192,9 @@ fn a_changed_message_is_told_from_its_siblings() {
 
 #[test]
 fn every_section_of_a_transcript_is_one_that_a_test_speaks() {
-    let mut sources = String::new();
-    for entry in std::fs::read_dir(repository("tests"))
-        .expect("tests")
-        .flatten()
-    {
-        if entry.path().is_file() {
-            sources.push_str(&std::fs::read_to_string(entry.path()).expect("a source"));
-        }
-    }
+    let sources = rust_files(&repository("tests")).into_iter();
+    let sources = sources.map(|path| std::fs::read_to_string(path).expect("a source"));
+    let sources: String = sources.collect();
     let mut count = 0;
     for entry in std::fs::read_dir(repository("tests/snapshots"))
         .expect("transcripts")

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{repository, rust_files};
+
 /// Module, and the modules of the crate it may import.
 const IMPORTS: &[(&str, &[&str])] = &[
     ("units", &[]),
@@ -114,33 +116,12 @@ const IMPORTS: &[(&str, &[&str])] = &[
 /// Modules that every other one may import.
 const FOR_ALL: &[&str] = &["declare", "vocabulary"];
 
-fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = fs::read_dir(folder)
-        .expect("a source folder is readable")
-        .flatten()
-        .collect();
-    entries.sort_by_key(std::fs::DirEntry::path);
-    for entry in entries {
-        let path = entry.path();
-        if path.is_dir() {
-            rust_files(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 fn sources() -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    rust_files(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut found,
-    );
-    found
+    rust_files(&repository("src"))
 }
 
 fn module_of(path: &Path) -> String {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let source = repository("src");
     let inside = path
         .strip_prefix(source)
         .expect("every source lies under src");
@@ -160,7 +141,7 @@ const ROOMS: &[&str] = &["filters/hardware"];
 
 /// The row of the import table that holds for a file: that of its room, else of its module.
 fn row_of(path: &Path) -> String {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let source = repository("src");
     let room = ROOMS
         .iter()
         .find(|room| path.starts_with(source.join(room)));
@@ -287,8 +268,7 @@ fn an_import_over_several_lines_is_seen() {
 #[test]
 fn the_architecture_page_shows_the_import_table() {
     let page =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md"))
-            .expect("the page is readable");
+        fs::read_to_string(repository("docs/architecture.md")).expect("the page is readable");
     for (module, imports) in IMPORTS {
         let own_row = page.lines().find(|line| {
             let first = line
@@ -454,7 +434,7 @@ fn no_source_file_is_too_long_to_be_read_whole() {
 
 /// Rooms of a module in the order of the table in its `mod.rs`.
 fn rooms_of(module: &str) -> Vec<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/{module}/mod.rs"));
+    let path = repository(&format!("src/{module}/mod.rs"));
     let text = fs::read_to_string(path).expect("a module has a file");
     let rows = text.lines().filter_map(|line| line.strip_prefix("//! | `"));
     rows.filter_map(|row| Some(row.split_once('`')?.0.to_owned()))

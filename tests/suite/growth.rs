@@ -315,7 +315,7 @@ fn files_of_a_suite_take_the_memory_of_one_run() {
         let mut child = Command::new(&own);
         child.args([
             "--exact",
-            "growth::writes_the_files_of_a_suite",
+            "suite::growth::writes_the_files_of_a_suite",
             "--ignored",
         ]);
         cost_of(child.env(POINTS, points.to_string())).memory_kb

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
 
-use crate::support::{repository, stdout};
+use crate::support::{repository, rust_files, stdout};
 
 /// Version of Rust as numbers; what is left out is 0.
 fn version(text: &str) -> Vec<u32> {
@@ -74,23 +73,6 @@ fn the_library_alone_brings_at_most_sixty_packages() {
     let alone = count("");
     assert!(alone <= 60, "{alone} packages without features");
     assert!(alone < count("cli"), "the program needs more");
-}
-
-/// Rust files of a folder and those below it.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("the folder is there");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    paths
-        .flat_map(|path| {
-            if path.is_dir() {
-                rust_files(&path)
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                vec![path]
-            } else {
-                Vec::new()
-            }
-        })
-        .collect()
 }
 
 #[test]

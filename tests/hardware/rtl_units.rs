@@ -29,7 +29,7 @@ use crate::support::stimulus::{predictor_pairs, words};
 use crate::support::{code, fogbench, repository, stderr};
 
 /// Bench of the units, which holds every line of a file against them.
-const UNIT_BENCH: &str = include_str!("verilog/unit_bench.v");
+const UNIT_BENCH: &str = include_str!("../verilog/unit_bench.v");
 
 fn is_ci() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "true")
@@ -189,9 +189,9 @@ fn run_units<F: Fp>(dir: &Path, lines: &str, units: &str, latency: u64) -> Strin
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-const FP_WAIT: &str = include_str!("../src/fpga/export/rtl/fp_wait.v");
-const FP_UNITS: &str = include_str!("../src/fpga/export/rtl/fp_units.v");
-const FP_SIM: &str = include_str!("../src/fpga/export/rtl/fp_sim.v");
+const FP_WAIT: &str = include_str!("../../src/fpga/export/rtl/fp_wait.v");
+const FP_UNITS: &str = include_str!("../../src/fpga/export/rtl/fp_units.v");
+const FP_SIM: &str = include_str!("../../src/fpga/export/rtl/fp_sim.v");
 
 fn check_units<F: Fp>(latencies: &[u64]) {
     if !has_iverilog() {
@@ -608,7 +608,7 @@ fn units_of_other_latencies_are_refused_where_there_is_no_machine() {
 
 /// The table of the page on hardware: what was measured, and the clocks that the machine takes.
 fn table_of_syntheses() -> String {
-    let rows = include_str!("synthesis/table.csv");
+    let rows = include_str!("../synthesis/table.csv");
     let mut text = String::from(
         "taps  words     device  clocks  Fmax MHz  us a sample      kHz   LUTs     FFs  DSPs  LUT RAMs\n",
     );

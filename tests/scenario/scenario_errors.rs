@@ -719,7 +719,7 @@ samples = "npy"
 
 #[test]
 fn the_worked_example_loads() {
-    let base = include_str!("../scenarios/base/fog70.toml");
+    let base = include_str!("../../scenarios/base/fog70.toml");
     let suite = Suite::new(&[("base/fog70.toml", base), ("paper/x.toml", EXAMPLE)]);
     let runs = suite.load(&["paper", "base"], &[]).unwrap();
     assert_eq!(runs.len(), 3);

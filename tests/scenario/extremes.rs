@@ -8,7 +8,7 @@ use fogbench::report::SVG_BYTES_MAX;
 use fogbench::signal::{FilterShape, WeightRule};
 use serde_json::Value;
 
-use crate::campaign::schema::{leaves, root};
+use crate::scenario::campaign::schema::{leaves, root};
 use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{code, field, fogbench, stderr, stdout, summary, tree, write};
 

@@ -14,15 +14,15 @@ use fogbench::{Run, Scenario};
 
 use crate::support::{code, fogbench, stderr, tree, write};
 
-#[path = "../examples/allan_of_a_log.rs"]
+#[path = "../../examples/allan_of_a_log.rs"]
 mod allan_of_a_log;
-#[path = "../examples/one_filter.rs"]
+#[path = "../../examples/one_filter.rs"]
 mod one_filter;
-#[path = "../examples/one_gyro.rs"]
+#[path = "../../examples/one_gyro.rs"]
 mod one_gyro;
-#[path = "../examples/pipeline_bits.rs"]
+#[path = "../../examples/pipeline_bits.rs"]
 mod pipeline_bits;
-#[path = "../examples/run_scenario.rs"]
+#[path = "../../examples/run_scenario.rs"]
 mod run_scenario;
 
 const AT_REST: &str = r#"

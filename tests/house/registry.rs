@@ -8,8 +8,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::campaign::schema::{Child, Kind, Table, leaves, root};
-use crate::extremes::shortest;
+use crate::scenario::campaign::schema::{Child, Kind, Table, leaves, root};
+use crate::scenario::extremes::shortest;
 use crate::support::{code, fogbench, kinds_of_the_bench, npy, stderr, stdout, summary, write};
 
 /// The alternatives of a table of the root.
@@ -81,7 +81,7 @@ fn every_motion_turns_the_table_and_is_measured() {
         let text = shortest(&key);
         assert!(
             motion == "static" || text.contains(&format!("[turntable.{motion}")),
-            "{motion} has no shortest scenario in tests/extremes.rs"
+            "{motion} has no shortest scenario in tests/scenario/extremes.rs"
         );
         // Keys of a base may be without effect, which here those of the other motions are.
         write(folder.path(), "bases/s.toml", &text);
