@@ -32,6 +32,8 @@ pub(crate) struct Columns {
     pub(super) found: Option<LogFormat>,
     /// What is worth saying of how the file ended.
     pub(super) note: Option<String>,
+    /// What is said of a column that is the time by its heading and not by its cells, if there is no other.
+    pub(super) unread_time: Option<String>,
     /// Empty lines between the rows.
     pub(crate) lines_between: LinesBetween,
     /// Where each row stands; rows of an array stand at their index.

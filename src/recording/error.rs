@@ -47,6 +47,20 @@ impl LogError {
         }
     }
 
+    /// The complaint about the unit of a reference, which has an option of its own.
+    pub(crate) fn of_reference(mut self) -> Self {
+        if let Self::Content { message, key, .. } = &mut self {
+            *message = message
+                .replace("the numbers", "the reference")
+                .replace("--unit", "--reference-unit");
+            *key = key.map(|key| match key {
+                "unit" => "reference_unit",
+                key => key,
+            });
+        }
+        self
+    }
+
     /// The complaint, with the key that asks for what cannot be.
     pub(crate) fn about(mut self, asking: Option<&'static str>) -> Self {
         if let Self::Content { key, .. } = &mut self {

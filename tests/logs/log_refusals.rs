@@ -92,6 +92,8 @@ fn stamps_of_dates_are_read_however_blanks_stand_in_them() {
         "2024-03-01 12:00:{s}+01",
         "2024-03-01 12:00:{s} -0330",
         "9:05:{s}",
+        "2024-03-01 01:00:{s} PM",
+        "01-Mar-2024 12:00:{s}",
     ] {
         let stamp = |seconds: f64| form.replace("{s}", &format!("{seconds:06.3}"));
         write(folder.path(), "log.csv", &table(",", ".", stamp));
@@ -122,17 +124,20 @@ fn what_cannot_be_read_is_told_with_its_line_and_the_option_that_says_more() {
         })
     };
     write(folder.path(), "us.csv", &stamped("03/01/2024 12:00:{s}"));
-    write(
-        folder.path(),
-        "noon.csv",
-        &stamped("2024-03-01 01:00:{s} PM"),
-    );
     let apart = plain.replace(",-", " , - ").replace(',', " , ");
     write(folder.path(), "apart.csv", &apart);
     let points = table(";", ",", |seconds| format!("{seconds:.2}")) + "4,00;1.5\n";
     write(folder.path(), "point.csv", &points);
     let mixed = plain.clone() + "4.00,1;5\n";
     write(folder.path(), "mixed.csv", &mixed);
+    let clock = |k: f64| format!("{:02}:59:{:05.2}", if k < 1.0 { 12 } else { 1 }, 20.0 + k);
+    write(folder.path(), "clock.csv", &table(",", ".", clock));
+    write(
+        folder.path(),
+        "still.csv",
+        &table(",", ".", |_| "0".to_owned()),
+    );
+    write(folder.path(), "footer.csv", &(plain.clone() + "END\n"));
     for arguments in [
         "plain.csv --column rat3",
         "plain.csv --time rat3",
@@ -150,10 +155,13 @@ fn what_cannot_be_read_is_told_with_its_line_and_the_option_that_says_more() {
         "plain.csv --time-unit iso",
         "us.csv --column rate --time time",
         "us.csv --column rate --time time --time-unit iso",
-        "noon.csv --column rate --time time",
         "apart.csv",
         "point.csv",
         "mixed.csv",
+        "clock.csv",
+        "still.csv",
+        "footer.csv",
+        "us.csv",
     ] {
         let (exit, said) = analysed(folder.path(), arguments);
         assert_eq!(exit, 2, "{arguments}: {said}");

@@ -7,6 +7,7 @@ mod log_cases;
 mod log_dwells;
 mod log_layouts;
 mod log_pass;
+mod log_real_files;
 mod log_refusals;
 mod log_scenarios;
 mod log_stream;

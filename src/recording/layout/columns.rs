@@ -1,12 +1,12 @@
-//! Which column is what: by name, part of a name or number, and the time by what its heading says.
+//! Which columns are what: by name, part of a name or number; [`times`](super::times) says which are the time.
 
 use super::cells::is_number;
+use super::times::{COUNTERS, SHORT_TIMES, TIMES};
 use super::{Asked, Layout, LayoutError};
 use crate::recording::log::format::LogFormat;
 use crate::recording::text::lines::{listed, shown};
-use crate::recording::time::stamp::{Stamp, is_date};
 use crate::recording::time::unit::TimeUnit;
-use crate::recording::unit::spelling::{Spelled, name_of_heading};
+use crate::recording::unit::spelling::Spelled;
 
 /// Word that says that a file has no column of the time.
 pub(super) const NO_TIME: &str = "none";
@@ -14,49 +14,7 @@ pub(super) const NO_TIME: &str = "none";
 /// Key of the column of the data.
 const COLUMN: &str = "column";
 /// Key of the column of the time.
-const TIME: &str = "time";
-
-/// Words in the heading of a column of time.
-const TIMES: [&str; 16] = [
-    "time",
-    "timestamp",
-    "timestamps",
-    "stamp",
-    "stamps",
-    "utc",
-    "gps",
-    "tow",
-    "sow",
-    "epoch",
-    "datetime",
-    "date",
-    "unixtime",
-    "gpstime",
-    "clock",
-    "elapsed",
-];
-/// Whole headings of such a column.
-const SHORT_TIMES: [&str; 4] = ["t", "ts", "secs", "sec"];
-/// Words in the heading of a counter of samples.
-const COUNTERS: [&str; 15] = [
-    "counter",
-    "packetcounter",
-    "count",
-    "cnt",
-    "packet",
-    "index",
-    "idx",
-    "sample",
-    "samples",
-    "seq",
-    "sequence",
-    "frame",
-    "no",
-    "nr",
-    "number",
-];
-/// Words in the heading of the week that stands beside the seconds of it.
-const WEEKS: [&str; 3] = ["week", "weeks", "wn"];
+pub(super) const TIME: &str = "time";
 
 /// What is read of a text.
 #[derive(Clone, Debug)]
@@ -78,13 +36,15 @@ pub(in crate::recording) struct Chosen {
     pub(in crate::recording) is_time_found: bool,
     /// What is worth saying of the unit of the time.
     pub(in crate::recording) time_note: Option<String>,
+    /// What is said of a column that is the time by its heading and not by its cells, if no other was found.
+    pub(in crate::recording) unread_time: Option<String>,
 }
 
 /// A layout with rows to look at.
-struct Chooser<'a> {
-    layout: &'a Layout,
-    format: &'a LogFormat,
-    rows: &'a [Vec<String>],
+pub(super) struct Chooser<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) format: &'a LogFormat,
+    pub(super) rows: &'a [Vec<String>],
 }
 
 /// Chooses the columns to read.
@@ -193,7 +153,7 @@ impl Chooser<'_> {
     }
 
     /// Index of the one column that a name, a part of one or a number from 1 names.
-    fn one(&self, asked: Asked<'_>) -> Result<usize, LayoutError> {
+    pub(super) fn one(&self, asked: Asked<'_>) -> Result<usize, LayoutError> {
         let (wanted, names) = (asked.name, &self.layout.names);
         let found = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
             (0..names.len())
@@ -289,231 +249,6 @@ impl Chooser<'_> {
         Err(LayoutError::SeveralColumns(
             self.listed() + &comma.unwrap_or_default() + wrapped,
         ))
-    }
-
-    /// Enters the columns of the time: those that are named, else those whose heading says so.
-    fn put_time(&self, data: &[usize], chosen: &mut Chosen) -> Result<(), LayoutError> {
-        let found: Vec<usize> = match self.format.time.as_deref() {
-            Some([none]) if none == NO_TIME => return Ok(()),
-            Some(names) => names
-                .iter()
-                .map(|name| {
-                    let key = Some(TIME);
-                    self.one(Asked { name, key })
-                })
-                .collect::<Result<_, _>>()?,
-            None => {
-                chosen.is_time_found = true;
-                self.found_times(data)?
-            }
-        };
-        let given = self.format.time_unit.as_deref();
-        if let Some(given) = given
-            && !found.is_empty()
-            && given.len() != found.len()
-        {
-            return Err(LayoutError::TimeUnits {
-                units: given.len(),
-                columns: found.len(),
-            });
-        }
-        let mut notes = Vec::new();
-        for (position, index) in found.into_iter().enumerate() {
-            let given = given.map(|units| units[position]);
-            let unit = self.time_unit(index, given, &mut notes);
-            chosen.time.push((index, unit));
-        }
-        chosen.time_note = notes.pop();
-        Ok(())
-    }
-
-    /// Unit of a column of time: that which was given, that of its heading, that of its first cell.
-    fn time_unit(
-        &self,
-        index: usize,
-        given: Option<TimeUnit>,
-        notes: &mut Vec<String>,
-    ) -> TimeUnit {
-        let name = self.layout.name(index).unwrap_or_default();
-        let in_heading = match self.layout.unit(index) {
-            Some(Spelled::Time(unit)) => Some(unit),
-            _ => None,
-        };
-        if let Some(unit) = given.or(in_heading) {
-            return unit;
-        }
-        let first = self.cells(index).next().unwrap_or_default();
-        if is_date(first) && !is_number(first, self.layout.decimal) {
-            return TimeUnit::Iso;
-        }
-        if self.is_named(index, &WEEKS) {
-            return TimeUnit::Weeks;
-        }
-        if self.is_named(index, &COUNTERS) && !self.is_named(index, &TIMES) {
-            return TimeUnit::Samples;
-        }
-        // Whole seconds since 1970 have ten digits, of smaller units three more each.
-        if first.contains(['.', ',', 'e', 'E']) {
-            return TimeUnit::Seconds;
-        }
-        let unit = match first.bytes().filter(u8::is_ascii_digit).count() {
-            13 => TimeUnit::Milliseconds,
-            16 => TimeUnit::Microseconds,
-            19 => TimeUnit::Nanoseconds,
-            _ => return TimeUnit::Seconds,
-        };
-        notes.push(format!(
-            "the stamps of column {} are taken for {unit} since 1970 by their digits: --time-unit says \
-             otherwise",
-            shown(&name)
-        ));
-        unit
-    }
-
-    /// Columns that are the time by their heading or their cells, a counter of samples where there is none
-    /// and the rate is given.
-    fn found_times(&self, data: &[usize]) -> Result<Vec<usize>, LayoutError> {
-        let free = |index: &usize| !data.contains(index);
-        let all: Vec<usize> = (0..self.layout.width()).filter(free).collect();
-        let of = |words: &[&str]| -> Vec<usize> {
-            let named = all.iter().copied();
-            named.filter(|index| self.is_time(*index, words)).collect()
-        };
-        let dates: Vec<usize> = all
-            .iter()
-            .copied()
-            .filter(|it| self.holds_dates(*it))
-            .collect();
-        let mut named = of(&TIMES);
-        named.extend(
-            dates
-                .iter()
-                .filter(|index| !named.contains(index))
-                .copied()
-                .collect::<Vec<_>>(),
-        );
-        if named.is_empty() {
-            named = all
-                .iter()
-                .copied()
-                .filter(|it| self.is_short_time(*it))
-                .collect();
-        }
-        if named.len() == 2 && self.are_date_and_time(named[0], named[1]) {
-            return Ok(named);
-        }
-        if let [seconds] = named[..]
-            && let Some(week) = all.iter().find(|it| self.is_named(**it, &WEEKS))
-        {
-            return Ok(vec![*week, seconds]);
-        }
-        match named[..] {
-            [] if self.format.rate_hz.is_some() => {
-                let counters = all.iter().copied().filter(|it| self.counts(*it));
-                Ok(counters.take(1).collect())
-            }
-            [] | [_] => Ok(named),
-            // A rate is known: the first of them is looked at, and named in the layout.
-            [first, ..] if self.format.rate_hz.is_some() => Ok(vec![first]),
-            _ => {
-                let names = named.iter().filter_map(|index| self.layout.name(*index));
-                Err(LayoutError::SeveralTimes(listed(
-                    &names.collect::<Vec<_>>(),
-                )))
-            }
-        }
-    }
-
-    /// Whether a heading has one of some words.
-    fn is_named(&self, index: usize, words: &[&str]) -> bool {
-        let Some(heading) = self.layout.names.get(index) else {
-            return false;
-        };
-        let name = name_of_heading(heading);
-        let mut parts = name.split(|letter: char| !letter.is_alphanumeric());
-        parts.any(|part| words.contains(&part))
-    }
-
-    /// Whether a column whose heading has one of some words rises as a time does.
-    fn is_time(&self, index: usize, words: &[&str]) -> bool {
-        self.is_named(index, words) && self.rises(index)
-    }
-
-    /// Whether a heading is a short name of the time, or a unit of time alone, above stamps that rise.
-    fn is_short_time(&self, index: usize) -> bool {
-        let Some(heading) = self.layout.names.get(index) else {
-            return false;
-        };
-        let name = name_of_heading(heading);
-        let is_short = SHORT_TIMES.contains(&name.as_str())
-            || (matches!(self.layout.unit(index), Some(Spelled::Time(_)))
-                && !heading.contains('_'))
-            || SHORT_TIMES.iter().any(|short| {
-                name.strip_prefix(short).is_some_and(|rest| {
-                    rest.strip_prefix('_')
-                        .is_some_and(|unit| TimeUnit::spelled(unit).is_some())
-                })
-            });
-        is_short && self.rises(index)
-    }
-
-    fn cells(&self, index: usize) -> impl Iterator<Item = &str> {
-        let rows = self.rows.iter();
-        rows.filter_map(move |row| row.get(index).map(String::as_str))
-    }
-
-    fn holds_dates(&self, index: usize) -> bool {
-        let mut cells = self.cells(index);
-        cells.next().is_some_and(is_date) && cells.all(is_date)
-    }
-
-    /// Whether one column holds dates and the other times of day.
-    fn are_date_and_time(&self, one: usize, other: usize) -> bool {
-        let is_day = |index| {
-            self.cells(index)
-                .all(|cell| is_date(cell) && !cell.contains(':'))
-        };
-        self.holds_dates(one) && self.holds_dates(other) && is_day(one) != is_day(other)
-    }
-
-    /// Whether the cells are stamps that fall back once at most.
-    fn rises(&self, index: usize) -> bool {
-        let unit = if self.holds_dates(index) {
-            TimeUnit::Iso
-        } else {
-            TimeUnit::Seconds
-        };
-        let stamps = self.cells(index).map(|cell| {
-            let stamp = Stamp::read(cell, unit, self.layout.decimal);
-            stamp.ok().map(|stamp| stamp.ticks)
-        });
-        let Some(stamps) = stamps.collect::<Option<Vec<i128>>>() else {
-            return false;
-        };
-        let falls = stamps.windows(2).filter(|two| two[1] < two[0]).count();
-        let rises = stamps.windows(2).any(|two| two[1] > two[0]);
-        falls <= 1 && (rises || stamps.len() < 2)
-    }
-
-    /// Whether a column counts samples: whole numbers of which most step by the same.
-    fn counts(&self, index: usize) -> bool {
-        if !self.is_named(index, &COUNTERS) {
-            return false;
-        }
-        let numbers = self.cells(index).map(|cell| cell.parse::<i64>().ok());
-        let Some(numbers) = numbers.collect::<Option<Vec<i64>>>() else {
-            return false;
-        };
-        let mut steps: Vec<i64> = numbers
-            .windows(2)
-            .map(|two| two[1].wrapping_sub(two[0]))
-            .collect();
-        steps.sort_unstable();
-        let Some(middle) = steps.get(steps.len() / 2).copied() else {
-            return false;
-        };
-        let same = steps.iter().filter(|step| **step == middle).count();
-        middle > 0 && 4 * same >= 3 * steps.len()
     }
 }
 

@@ -136,12 +136,12 @@ pub(in crate::recording) enum LayoutError {
     SeveralTimes(String),
     #[error("--time-unit names {units} units of {columns} columns of --time: expected one of each")]
     TimeUnits { units: usize, columns: usize },
-    #[error("{got} cells where the {reference} has {expected}{way_out}")]
+    #[error("{} where the {reference} has {expected}{way_out}", counted(*.got, "cell"))]
     Width {
         got: usize,
         reference: &'static str,
         expected: usize,
-        way_out: &'static str,
+        way_out: String,
     },
     #[error(
         "column {column} has a number where the first row has `{word}`: expected a heading without \

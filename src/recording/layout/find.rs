@@ -19,8 +19,14 @@ const MARKS: [&str; 3] = ["#", "//", "%"];
 pub(super) struct Rows {
     pub(super) separator: Separator,
     pub(super) decimal: DecimalSign,
-    /// Cells of a row.
+    /// Cells of most rows, empty ones behind the others not counted.
     pub(super) cells: usize,
+    /// The same, those counted: a last column may be empty in most rows.
+    pub(super) cells_most: usize,
+    /// Cells of the row that has most of them, no more than that.
+    cells_used: usize,
+    /// Whether the first cells of rows count them.
+    pub(super) is_counted: bool,
     /// Columns that hold numbers or dates in most rows.
     numeric: Vec<usize>,
 }
@@ -110,7 +116,11 @@ fn layout(
         first_row_line: first.number,
         separator: rows.separator,
         decimal: rows.decimal,
-        cells: rows.cells.max(names.len()),
+        cells: match names.len() {
+            0 => rows.cells_used,
+            named => named.max(rows.cells),
+        },
+        cells_least: rows.cells,
         names,
         units: units.unwrap_or_default(),
         wrapped: format.wrapped_columns.map(|columns| columns as usize),
@@ -156,7 +166,8 @@ fn rows(head: &[&HeadLine], format: &LogFormat) -> Result<Option<(Rows, Vec<Stri
         .copied()
         .filter(|it| !it.trim().starts_with(';'))
         .collect();
-    let Some(sample) = tail(&plain) else {
+    let is_comment_mark = !plain.is_empty();
+    let Some(sample) = tail(if is_comment_mark { &plain } else { &lines }) else {
         return Ok(None);
     };
     let separator = format
@@ -250,6 +261,10 @@ impl Rows {
             .map(|line| delimiter.first_cells(line))
             .collect();
         let cells = most_frequent(cut.iter().map(Vec::len));
+        let all = sample.iter().map(|line| delimiter.cells(line).len());
+        let cells_most = most_frequent(all).max(cells);
+        let used = cut.iter().map(Vec::len).filter(|used| *used <= cells_most);
+        let cells_used = used.max().unwrap_or(cells);
         let whole: Vec<&Vec<&str>> = cut.iter().filter(|row| row.len() == cells).collect();
         let is_numeric = |column: &usize| {
             let values = whole.iter().filter(|row| is_value(row[*column], decimal));
@@ -259,6 +274,9 @@ impl Rows {
             separator,
             decimal,
             cells,
+            cells_most,
+            cells_used,
+            is_counted: are_counted(&whole),
             numeric: (0..cells).filter(is_numeric).collect(),
         }
     }
@@ -268,10 +286,22 @@ impl Rows {
         let cells = Delimiter::from(self.separator).cells_up_to(line, self.cells);
         let is_in_place =
             |column: &usize| is_value(cells[*column], self.decimal) || is_missing(cells[*column]);
-        cells.len() == self.cells
+        (self.cells..=self.cells_most).contains(&cells.len())
             && !self.numeric.is_empty()
             && self.numeric.iter().all(is_in_place)
     }
+}
+
+/// Whether the first cells of rows are whole numbers one after the other.
+fn are_counted(rows: &[&Vec<&str>]) -> bool {
+    let numbers = rows.iter().map(|row| row.first()?.parse::<i64>().ok());
+    let Some(numbers) = numbers.collect::<Option<Vec<i64>>>() else {
+        return false;
+    };
+    numbers.len() > 1
+        && numbers
+            .windows(2)
+            .all(|two| two[0].checked_add(1) == Some(two[1]))
 }
 
 /// The most frequent of some counts; of several the largest.

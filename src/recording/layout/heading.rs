@@ -203,7 +203,8 @@ fn without_heading(
                 got,
                 reference: "first row",
                 expected: rows.cells,
-                way_out: "; if this is no heading, --heading-line 0 takes the rows to have none",
+                way_out: "; if this is no heading, --heading-line 0 takes the rows to have none"
+                    .to_owned(),
             },
         });
     }
@@ -223,8 +224,12 @@ fn names_in(line: &str, rows: &Rows) -> Option<Vec<String>> {
     // Behind the last name cells may be empty, as of a column without a unit.
     let cells = own.cells_up_to(line, rows.cells);
     let owned = |cells: Vec<&str>| Some(cells.into_iter().map(str::to_owned).collect());
-    if cells.len() == rows.cells {
+    if (rows.cells..=rows.cells_most).contains(&cells.len()) || is_but_for_comments(&cells, rows) {
         return owned(cells);
+    }
+    // Names of all columns but that of the rows' own names, as R and pandas write them.
+    if rows.is_counted && cells.len() + 1 == rows.cells && is_heading(&cells).unwrap_or(false) {
+        return owned(std::iter::once("").chain(cells).collect());
     }
     if rows.cells == 1 && rows.separator == Separator::Blanks {
         return owned(vec![line.trim()]);
@@ -245,6 +250,17 @@ fn names_in(line: &str, rows: &Rows) -> Option<Vec<String>> {
             let cells = words_with_brackets(line);
             (rows.cells > 1 && cells.len() == rows.cells).then_some(cells)
         })
+}
+
+/// Names of a last column for comments, which rows leave out.
+const COMMENTS: [&str; 6] = ["comment", "comments", "note", "notes", "remark", "remarks"];
+
+/// Whether some names are as many as rows have cells and one of a last column for comments.
+fn is_but_for_comments(names: &[&str], rows: &Rows) -> bool {
+    let last = names.last().map(|name| name.to_lowercase());
+    names.len() == rows.cells + 1
+        && rows.separator != Separator::Blanks
+        && last.is_some_and(|last| COMMENTS.contains(&last.as_str()))
 }
 
 /// Words between blanks, each with the brackets behind it.

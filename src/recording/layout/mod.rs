@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!  first lines ──> find: separator, decimal sign, width, first row ──> heading: names, units, preamble
-//!                                                                       └──> columns: which is what
+//!                                                                       └──> columns: which is what,
+//!                                                                            times: which is the time
 //! ```
 //!
 //! Invariant: nothing is passed over in silence. A line above the rows is a comment, a heading, a row of
@@ -15,6 +16,7 @@ mod error;
 mod explain;
 mod find;
 mod heading;
+mod times;
 pub(super) mod words;
 
 pub(super) use cells::{finite_in, is_number, plain_spelling};
@@ -48,6 +50,8 @@ pub(super) struct Layout {
     pub(super) decimal: DecimalSign,
     /// Cells of a row.
     pub(super) cells: usize,
+    /// Fewest cells of a row: the last columns may be empty, as one for comments.
+    pub(super) cells_least: usize,
     /// Names of the columns; empty without a heading.
     pub(super) names: Vec<String>,
     /// What the row of units says of each column; empty without one.
@@ -84,6 +88,7 @@ impl Layout {
             separator: Separator::Blanks,
             decimal: DecimalSign::Point,
             cells: columns,
+            cells_least: columns,
             names: Vec::new(),
             units: Vec::new(),
             wrapped: None,
@@ -96,6 +101,7 @@ impl Layout {
         Self {
             units,
             cells: names.len(),
+            cells_least: names.len(),
             names,
             ..Self::of_array(0)
         }

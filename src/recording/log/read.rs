@@ -15,6 +15,7 @@ use crate::recording::input::Input;
 use crate::recording::layout::Asked;
 use crate::recording::layout::columns::Selection;
 use crate::recording::layout::words::WordKind;
+use crate::recording::log::rows::LogRows;
 use crate::recording::npy::{archive, array};
 use crate::recording::text::lines::shown;
 use crate::recording::text::table::{self, Wanted};
@@ -96,7 +97,7 @@ pub(super) fn wanted_by(format: &LogFormat, gaps: Gaps) -> Wanted<'_> {
         needs_time: true,
         gaps,
         format,
-        samples_max: usize::MAX,
+        samples_max: format.rows.and_then(LogRows::last).unwrap_or(usize::MAX),
     }
 }
 
@@ -139,7 +140,8 @@ pub(super) fn logs_of(
     if let Some(column) = reference {
         let format = format.of_reference(column.unit);
         let neighbours = Neighbours::of(&column.values);
-        let reference = log(path, &columns, (column, neighbours), &format, &spacing)?;
+        let reference = log(path, &columns, (column, neighbours), &format, &spacing)
+            .map_err(LogError::of_reference)?;
         for log in &mut logs {
             log.take_reference(&reference)
                 .map_err(|error| LogError::of_file(path, error))?;
@@ -318,7 +320,7 @@ pub(super) fn spacing(
     let stretches = parts(path, columns, rows, format)?;
     let spacing = match &columns.time {
         Some(time) => timing(path, columns, time, (format, wanted.gaps), &stretches),
-        None => by_rate(path, format, stretches),
+        None => by_rate(path, columns, format, stretches),
     };
     let spacing = spacing.map_err(|error| with_units(path, data, format, error))?;
     check_sample_rate(spacing.sample_rate_hz).map_err(|error| match &columns.time {
@@ -334,11 +336,15 @@ pub(super) fn spacing(
 
 fn by_rate(
     path: &Path,
+    columns: &Columns,
     format: &LogFormat,
     stretches: Vec<Range<usize>>,
 ) -> Result<Spacing, LogError> {
     let Some(sample_rate_hz) = format.rate_hz else {
-        let message = "the sample rate is not known: give --rate-hz, or a time column with --time";
+        let unread = columns.unread_time.as_deref().unwrap_or_default();
+        let message = format!(
+            "the sample rate is not known: give --rate-hz, or a time column with --time{unread}"
+        );
         return Err(LogError::of_file(path, message));
     };
     Ok(Spacing {

@@ -23,6 +23,11 @@ pub struct LogRows {
 pub struct UnknownLogRows;
 
 impl LogRows {
+    /// The last row, from 1; none if all behind the first are taken.
+    pub(in crate::recording) fn last(self) -> Option<usize> {
+        self.last.map(NonZeroUsize::get)
+    }
+
     /// The indices of the rows in a log of so many; nothing where it has none of them.
     pub(in crate::recording) fn within(self, count: usize) -> Option<Range<usize>> {
         let first = self.first.map_or(0, |first| first.get() - 1);

@@ -108,8 +108,9 @@ pub(crate) fn open_keeping(
     let Some(mut rows) = Rows::open(path, input, &wanted, HEAD_LINES)? else {
         return Err(no_sample(path, format));
     };
-    let goes_on = rows.read_up_to(if streams(format) { most } else { usize::MAX })?;
-    if !goes_on {
+    let may_go_on = streams(format);
+    let goes_on = rows.read_up_to(if may_go_on { most } else { wanted.samples_max })?;
+    if !goes_on || !may_go_on {
         let columns = with_samples(path, rows.into_columns(), format)?;
         return logs_of(path, columns, &wanted).map(LogSource::Whole);
     }

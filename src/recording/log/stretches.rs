@@ -76,16 +76,30 @@ pub(in crate::recording) fn parts(
             .ok_or_else(|| refuse(PartError::NoRow { rows, count }))?,
         None => 0..count,
     };
+    let is_cut = format.from_s.is_some() || format.to_s.is_some();
+    let whole = (
+        format.from_s.unwrap_or(0.0),
+        format.to_s.unwrap_or(f64::INFINITY),
+    );
     let bounds = match &format.segments {
         Some(file) => table_of(&path.parent().unwrap_or(Path::new("")).join(file), file)?,
-        None if format.from_s.is_some() || format.to_s.is_some() => {
-            let to_s = format.to_s.unwrap_or(f64::INFINITY);
-            vec![(format.from_s.unwrap_or(0.0), to_s)]
-        }
+        None if is_cut => vec![whole],
         None => return Ok(vec![rows]),
     };
     let stamp = clock(columns, format).ok_or_else(|| refuse(PartError::NoClock))?;
-    let mut parts = Vec::new();
+    let no_time = |(from_s, to_s): (f64, f64)| {
+        let end_s = stamp(count - 1);
+        refuse(PartError::NoTime {
+            from_s,
+            to_s,
+            end_s,
+        })
+    };
+    let bounds = within(&bounds, whole);
+    if bounds.is_empty() {
+        return Err(no_time(whole));
+    }
+    let mut parts: Vec<Range<usize>> = Vec::new();
     for (from_s, to_s) in bounds {
         // Stamps rise, so that the rows of a stretch follow one another.
         let mut inside = rows
@@ -94,16 +108,23 @@ pub(in crate::recording) fn parts(
         let first = inside.next();
         let last = inside.next_back().or(first);
         let (Some(first), Some(last)) = (first, last) else {
-            let end_s = stamp(count - 1);
-            return Err(refuse(PartError::NoTime {
-                from_s,
-                to_s,
-                end_s,
-            }));
+            return Err(no_time((from_s, to_s)));
         };
-        parts.push(first..last + 1);
+        // The sample at a time that ends one stretch and begins the next is one sample.
+        match parts.last_mut() {
+            Some(before) if first < before.end => before.end = last + 1,
+            _ => parts.push(first..last + 1),
+        }
     }
     Ok(parts)
+}
+
+/// The stretches of time within a longer one, as far as they lie in it.
+fn within(bounds: &[(f64, f64)], (from_s, to_s): (f64, f64)) -> Vec<(f64, f64)> {
+    let cut = bounds
+        .iter()
+        .map(|(from, to)| (from.max(from_s), to.min(to_s)));
+    cut.filter(|(from, to)| from <= to).collect()
 }
 
 /// Time of a row from the first one on, s.

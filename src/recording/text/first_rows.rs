@@ -52,21 +52,26 @@ pub(super) fn chosen(
         let is_row = !layout.is_comment(text) && !heads.hold(layout, text);
         line.number >= layout.first_row_line && is_row
     });
-    let cells = rows.take(SAMPLE_ROWS).flat_map(|line| {
+    let cut = rows.take(SAMPLE_ROWS).map(|line| {
         let cells = layout.delimiter().cells_up_to(&line.text, layout.cells);
         cells.into_iter().map(str::to_owned).collect::<Vec<_>>()
     });
-    let cells: Vec<String> = cells.collect();
-    let records: Vec<Vec<String>> = match layout.wrapped {
-        Some(columns) => cells
-            .chunks_exact(columns)
-            .map(<[String]>::to_vec)
-            .collect(),
-        None => cells
-            .chunks_exact(layout.cells.max(1))
-            .map(<[String]>::to_vec)
-            .collect(),
-    };
+    let mut records: Vec<Vec<String>> = cut.collect();
+    match layout.wrapped {
+        Some(columns) => {
+            let cells = records.concat();
+            records = cells
+                .chunks_exact(columns)
+                .map(<[String]>::to_vec)
+                .collect();
+        }
+        // What a row leaves out at its end is empty.
+        None => {
+            for record in &mut records {
+                record.resize(layout.cells, String::new());
+            }
+        }
+    }
     choose(
         layout,
         wanted.format,

@@ -15,9 +15,31 @@ const SHOWN_CHARACTERS: usize = 40;
 const LISTED_MAX: usize = 20;
 
 /// What spreadsheets write where a number is missing.
-const SPREADSHEET_ERRORS: [&str; 6] = ["#N/A", "#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NULL!"];
+const SPREADSHEET_ERRORS: [&str; 12] = [
+    "#N/A", "#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NULL!", "#NV", "#WERT!", "#BEZUG!", "#ZAHL!",
+    "#VALEUR!", "#NOMBRE!",
+];
 /// Words for a missing number, in small letters.
-const MISSING: [&str; 6] = ["n/a", "na", "null", "none", "nil", "missing"];
+const MISSING: [&str; 18] = [
+    "n/a",
+    "na",
+    "null",
+    "none",
+    "nil",
+    "missing",
+    "-",
+    "--",
+    "---",
+    "?",
+    "ovr",
+    "ovl",
+    "nan(ind)",
+    "-nan(ind)",
+    "1.#ind",
+    "-1.#ind",
+    "1.#qnan",
+    "-1.#qnan",
+];
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// First bytes of what is no text in UTF-8, and what to do.

@@ -287,6 +287,7 @@ impl Table {
                 layout: Some(line),
                 found: Some(found),
                 note: None,
+                unread_time: chosen.unread_time.clone(),
                 lines: Some(RowLines::default()),
                 lines_between: LinesBetween::default(),
             },
@@ -434,18 +435,8 @@ impl Table {
             }
             count += 1;
         }
-        let expected = self.layout.width();
-        if count != expected {
-            return Err(RowError::Layout(LayoutError::Width {
-                got: count,
-                reference: if self.layout.names.is_empty() {
-                    "first row"
-                } else {
-                    "first line"
-                },
-                expected,
-                way_out: "",
-            }));
+        if !self.is_whole(count) {
+            return Err(RowError::Layout(self.other_width(count)));
         }
         match fault {
             None => {}
@@ -457,6 +448,36 @@ impl Table {
         match &mut self.columns.time {
             Some(time) => time.take(stamp).map_err(RowError::Memory),
             None => Ok(()),
+        }
+    }
+
+    /// Whether a row of so many cells has one in every column that is read.
+    fn is_whole(&self, count: usize) -> bool {
+        let expected = self.layout.width();
+        if count == expected {
+            return true;
+        }
+        let least = match self.layout.wrapped {
+            Some(_) => expected,
+            None => self.layout.cells_least,
+        };
+        let mut left_out = self.roles.iter().skip(count);
+        (least..expected).contains(&count) && left_out.all(|role| matches!(role, Role::Nothing))
+    }
+
+    fn other_width(&self, got: usize) -> LayoutError {
+        let way_out = match self.seen() {
+            0 => String::new(),
+            rows => format!("; --rows :{rows} takes those above alone"),
+        };
+        LayoutError::Width {
+            got,
+            reference: match self.layout.names.is_empty() {
+                true => "first row",
+                false => "first line",
+            },
+            expected: self.layout.width(),
+            way_out,
         }
     }
 

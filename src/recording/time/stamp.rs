@@ -261,6 +261,10 @@ fn day(bytes: &[u8]) -> Option<(i64, &[u8])> {
         [d0, d1, b'.', m0, m1, b'.', y0, y1, y2, y3, behind @ ..] => {
             ([*y0, *y1, *y2, *y3], [*m0, *m1], [*d0, *d1], behind)
         }
+        [d0, d1, b'-', a, b, c, b'-', y0, y1, y2, y3, behind @ ..] => {
+            let month = month_of([*a, *b, *c])?;
+            ([*y0, *y1, *y2, *y3], month, [*d0, *d1], behind)
+        }
         _ => return None,
     };
     let (year, month, day) = (number(&year)?, number(&month)?, number(&day)?);
@@ -276,6 +280,15 @@ fn day(bytes: &[u8]) -> Option<(i64, &[u8])> {
     let of_year = (153 * month + 2) / 5 + day - 1;
     let leaps = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
     Some((365 * year + leaps + of_year - 719_468, behind))
+}
+
+/// Digits of a month by the first letters of its English name.
+fn month_of(letters: [u8; 3]) -> Option<[u8; 2]> {
+    const MONTHS: &[u8; 36] = b"janfebmaraprmayjunjulaugsepoctnovdec";
+    let wanted = letters.map(|letter| letter.to_ascii_lowercase());
+    let at = MONTHS.chunks_exact(3).position(|month| month == wanted)?;
+    let number = u8::try_from(at + 1).ok()?;
+    Some([b'0' + number / 10, b'0' + number % 10])
 }
 
 fn days_of_month(year: i64, month: i64) -> i64 {
@@ -312,6 +325,8 @@ fn time_of_day(bytes: &[u8]) -> Option<Stamp> {
             let seconds = number(&[*s0, *s1]).filter(|seconds| *seconds <= 60)?;
             let (decimals, count, behind) = match behind {
                 [b'.' | b',', digits @ ..] => decimals(digits)?,
+                // As LabVIEW writes milliseconds.
+                [b':', digits @ ..] if digits.len() >= 3 => decimals(digits)?,
                 behind => (0, 0, behind),
             };
             let seconds = i128::from(seconds) * TICKS + decimals;
@@ -320,8 +335,9 @@ fn time_of_day(bytes: &[u8]) -> Option<Stamp> {
         }
         behind => (0, 60 * TICKS, behind),
     };
+    let (noon, behind) = half_of_day(hours, behind)?;
     Some(Stamp {
-        ticks: whole + seconds - zone(behind)?,
+        ticks: whole + noon + seconds - zone(behind)?,
         resolution,
     })
 }
@@ -342,6 +358,21 @@ fn decimals(bytes: &[u8]) -> Option<(i128, u32, &[u8])> {
     }
     let count = u32::try_from(count.min(DECIMALS)).ok()?;
     (count > 0).then_some((ticks, count, behind))
+}
+
+/// Ticks to add to hours from 1 to 12 for the half of the day that is named behind them, and what stands behind.
+fn half_of_day(hours: i64, behind: &[u8]) -> Option<(i128, &[u8])> {
+    let half = match behind.trim_ascii_start() {
+        [half @ (b'a' | b'A' | b'p' | b'P'), b'm' | b'M', ..] => half.to_ascii_lowercase(),
+        _ => return Some((0, behind)),
+    };
+    let noon = match (half, hours) {
+        (b'a', 12) => -DAY / 2,
+        (b'a', 1..=11) | (b'p', 12) => 0,
+        (b'p', 1..=11) => DAY / 2,
+        _ => return None,
+    };
+    Some((noon, &behind.trim_ascii_start()[2..]))
 }
 
 /// Ticks by which a zone, behind blanks or none, is ahead.
@@ -414,6 +445,16 @@ mod tests {
             at("2024-03-01T12:00:00.25")
         );
         assert_eq!(at("9:05:00.25"), at("09:05:00.25"));
+        for cell in [
+            "2024-03-01 12:00:00.25 PM",
+            "01-Mar-2024 12:00:00.25",
+            "01-MAR-2024 12:00:00:250",
+            "2024-03-01 12:00:00.25pm Z",
+        ] {
+            assert_eq!(at(cell), at("2024-03-01T12:00:00.25"), "{cell}");
+        }
+        assert_eq!(at("12:30:00 AM"), at("00:30:00"));
+        assert_eq!(at("1:30:00 PM"), at("13:30:00"));
         assert_eq!(at("1900-03-01") - at("1900-02-28"), DAY);
         assert_eq!(at("2016-12-31T23:59:60Z"), at("2017-01-01T00:00:00Z"));
         for cell in [
@@ -429,6 +470,10 @@ mod tests {
             "2024-03-01 12:00:00 -15",
             "9:5:00",
             "123:00:00",
+            "13:00:00 PM",
+            "00:30:00 am",
+            "01-Mrz-2024",
+            "12:00:00:25",
             ":12:00",
             "03.2024",
             "2024-03-01T25:00",

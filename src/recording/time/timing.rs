@@ -89,6 +89,8 @@ struct Clock<'a> {
     format: &'a LogFormat,
     /// The period that the stamps tell.
     found: f64,
+    /// What the stamps resolve, s.
+    last_digit: f64,
     /// What a step may be; the period is that which was given, if one was.
     steps: Steps,
 }
@@ -122,6 +124,13 @@ pub(in crate::recording) fn timing(
         return Err(LogError::of_file(path, message));
     }
     let clock = Clock::of(path, columns, time, (format, gaps), stretches);
+    if clock.found.is_nan() || clock.found <= 0.0 {
+        let message = format!(
+            "column {}: most stamps stand still: if they are no time, say --time none and give --rate-hz",
+            shown(&time.name)
+        );
+        return Err(LogError::of_file(path, message).about(Some("time")));
+    }
     // Stamps of another clock altogether have no gaps.
     if (clock.steps.period / clock.found).ln().abs() > RATE_CLEARLY_OTHER {
         return Err(clock.contradiction(1.0 / clock.found));
@@ -213,7 +222,11 @@ impl<'a> Clock<'a> {
         stretches: &[Range<usize>],
     ) -> Self {
         let median = median_step(&time.stamps, stretches);
-        let last_digit = time.last_digit();
+        // Where most stamps repeat, they are rounded to their least rise, whatever digits they are spelled with.
+        let last_digit = match median > 0.0 {
+            true => time.last_digit(),
+            false => time.last_digit().max(least_rise(&time.stamps, stretches)),
+        };
         // The median of a few multiples of the last digit is one of them.
         let mean = mean_of_steps_up_to(1.5 * median + last_digit, &time.stamps, stretches);
         let found = if 2.0 * last_digit >= mean {
@@ -230,6 +243,7 @@ impl<'a> Clock<'a> {
             time,
             format,
             found,
+            last_digit,
             steps: Steps {
                 period,
                 coarseness: if is_coarse { last_digit } else { 0.0 },
@@ -323,7 +337,11 @@ impl<'a> Clock<'a> {
     /// What the stamps say of the spacing.
     fn measured(&self, stretches: &[Range<usize>]) -> Timing {
         let stamps = &self.time.stamps;
-        let mean = mean_step(stamps, stretches);
+        // The first and the last of stamps that are rounded to more than a sample stand anywhere in that.
+        let mean = match self.steps.coarseness > 1.01 * self.steps.period {
+            true => slope(stamps, stretches),
+            false => mean_step(stamps, stretches),
+        };
         let mut jitter_max_s = 0.0_f64;
         for rows in stretches {
             let mut ordinal = 0.0;
@@ -333,7 +351,7 @@ impl<'a> Clock<'a> {
                 ordinal += 1.0;
             }
         }
-        let resolution_s = self.time.last_digit();
+        let resolution_s = self.last_digit;
         Timing {
             sample_rate_hz: 1.0 / mean,
             jitter_max_s,
@@ -428,6 +446,38 @@ fn mean_step(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
     time / steps
 }
 
+/// Step of the straight lines of one slope that fit the stamps of all stretches best.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "sample counts are far below 2^53"
+)]
+fn slope(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
+    let (mut products, mut squares) = (0.0, 0.0);
+    for rows in stretches {
+        let own = &stamps[rows.clone()];
+        let count = own.len() as f64;
+        let middle = 0.5 * (count - 1.0);
+        let mean = own.iter().sum::<f64>() / count;
+        let mut ordinal = 0.0;
+        for stamp in own {
+            products += (ordinal - middle) * (stamp - mean);
+            squares += (ordinal - middle) * (ordinal - middle);
+            ordinal += 1.0;
+        }
+    }
+    products / squares
+}
+
+/// Least step that is none of the same stamp again; 0 without one.
+fn least_rise(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
+    let all = stretches
+        .iter()
+        .flat_map(|rows| stamps[rows.clone()].windows(2));
+    let rises = all.map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    let least = rises.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
 /// Mean of the steps that are no gaps.
 fn mean_of_steps_up_to(most: f64, stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
     let all = stretches
@@ -435,7 +485,8 @@ fn mean_of_steps_up_to(most: f64, stamps: &[f64], stretches: &[Range<usize>]) ->
         .flat_map(|rows| stamps[rows.clone()].windows(2));
     let steps = all
         .map(|pair| pair[1] - pair[0])
-        .filter(|step| *step <= most);
+        // Where a clock begins again, it does not run backwards.
+        .filter(|step| (0.0..=most).contains(step));
     let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
     sum / count
 }
