@@ -119,6 +119,7 @@ mod resets;
 mod resume;
 mod rows;
 mod rtl;
+mod rtl_mutants;
 mod rtl_units;
 mod scale_factor_test;
 mod scenario_errors;
