@@ -12,6 +12,7 @@ mod fpga_health;
 mod pipeline;
 mod resets;
 mod rtl;
+mod rtl_mutants;
 mod rtl_units;
 mod sign_lms_hardware;
 mod timing;

@@ -139,7 +139,7 @@ fn drawn_pair<F: Fp>(draws: &mut Draws) -> (u64, u64) {
 }
 
 /// Lines of the bench: operation, operands, and what the processor makes of them.
-fn unit_lines<F: Fp>(count: usize) -> String {
+pub(crate) fn unit_lines<F: Fp>(count: usize) -> String {
     let special = special_words::<F>();
     let pairs = special
         .iter()
@@ -148,6 +148,10 @@ fn unit_lines<F: Fp>(count: usize) -> String {
     let drawn = (0..count).map(|_| drawn_pair::<F>(&mut draws));
     let digits = F::WIDTH as usize / 4;
     let mut text = String::new();
+    let mut line = |operation: usize, a: u64, b: u64, q: u64| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{operation}{a:0digits$x}{b:0digits$x}{q:0digits$x}");
+    };
     for (k, (a, b)) in pairs.chain(drawn).enumerate() {
         let (x, y) = (F::from_bits(a), F::from_bits(b));
         let results = [x.add(y), x.sub(y), x.mul(y), x.div(y)];
@@ -155,42 +159,106 @@ fn unit_lines<F: Fp>(count: usize) -> String {
         let is_special = k < special.len() * special.len();
         for (operation, result) in results.into_iter().enumerate() {
             if is_special || k % 4 == operation {
-                let q = result.to_bits();
-                writeln!(text, "{operation}{a:0digits$x}{b:0digits$x}{q:0digits$x}")
-                    .expect("writing to a string cannot fail");
+                line(operation, a, b, result.to_bits());
             }
+        }
+    }
+    if F::WIDTH == 64 {
+        for word in words_to_narrow(special, count / 4) {
+            line(4, word, 0, narrowed(word, F::FLUSHES_SUBNORMALS));
         }
     }
     text
 }
 
-/// Runs the bench of the units over lines; returns what it prints.
-fn run_units<F: Fp>(dir: &Path, lines: &str, units: &str, latency: u64) -> String {
-    for (name, text) in [
-        ("unit_bench.v", UNIT_BENCH),
-        ("units.hex", lines),
-        ("units.v", units),
-        ("fp_wait.v", FP_WAIT),
-    ] {
-        fs::write(dir.join(name), text).expect("a writable folder");
-    }
+/// Words of binary64 around the ends of binary32, and `count` that are drawn, most within them.
+fn words_to_narrow(special: Vec<u64>, count: usize) -> Vec<u64> {
+    let ends = [
+        0x3690_0000_0000_0000, // half the smallest subnormal number, and around it
+        0x3690_0000_0000_0001,
+        0x36a0_0000_0000_0000,
+        0x36b8_0000_0000_0000,
+        0x380f_ffff_c000_0000, // the largest subnormal one, and around half a step above
+        0x380f_ffff_dfff_ffff,
+        0x380f_ffff_e000_0000,
+        0x3810_0000_0000_0000,
+        0x3810_0000_2000_0000,
+        0x47ef_ffff_e000_0000, // the largest one, and around half a step above
+        0x47ef_ffff_efff_ffff,
+        0x47ef_ffff_f000_0000,
+        0x47f0_0000_0000_0000,
+    ];
+    let negative = ends.map(|word| word | 1 << 63);
+    let mut draws = Draws(11);
+    let drawn = (0..count).map(|k| {
+        let word = draws.word() & !(0x7ff << 52) | (860 + draws.below(300)) << 52;
+        // Some lie halfway between two words.
+        let halfway = 1 << 28;
+        if k % 4 == 0 {
+            word >> 29 << 29 | halfway
+        } else {
+            word
+        }
+    });
+    special
+        .into_iter()
+        .chain(ends)
+        .chain(negative)
+        .chain(drawn)
+        .collect()
+}
+
+/// Bits of the nearest binary32 of a binary64 word.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the rounding to binary32 is what is asked for"
+)]
+fn narrowed(word: u64, flushes: bool) -> u64 {
+    let narrow = f64::from_bits(word) as f32;
+    let bits = if narrow.is_nan() {
+        0x7fc0_0000
+    } else if flushes && narrow.is_subnormal() {
+        narrow.to_bits() & 0x8000_0000
+    } else {
+        narrow.to_bits()
+    };
+    u64::from(bits)
+}
+
+/// Writes the bench of the units over lines and its script into a folder.
+pub(crate) fn write_unit_bench<F: Fp>(dir: &Path, lines: &str, latency: u64) {
     let (width, flushes) = (F::WIDTH, u8::from(F::FLUSHES_SUBNORMALS));
     let count = lines.lines().count();
     let script = format!(
-        "iverilog -g2012 -Wall -Wno-timescale -P unit_bench.W={width} -P unit_bench.FTZ={flushes} \
+        "cd \"$(dirname \"$0\")\"\n\
+         iverilog -g2012 -Wall -Wno-timescale -P unit_bench.W={width} -P unit_bench.FTZ={flushes} \
          -P unit_bench.LATENCY={latency} -P unit_bench.COUNT={count} -s unit_bench -o bench \
-         unit_bench.v units.v fp_wait.v && vvp -n bench"
+         unit_bench.v fp_units.v fp_wait.v front_end.v && vvp -n bench\n"
     );
-    let shell = Command::new("sh")
-        .args(["-c", &script])
-        .current_dir(dir)
-        .output();
+    for (name, text) in [
+        ("unit_bench.v", UNIT_BENCH),
+        ("units.hex", lines),
+        ("fp_units.v", FP_UNITS),
+        ("fp_wait.v", FP_WAIT),
+        ("front_end.v", FRONT_END),
+        ("run.sh", &script),
+    ] {
+        fs::write(dir.join(name), text).expect("a writable folder");
+    }
+}
+
+/// Runs the bench of the units over lines; returns what it prints.
+fn run_units<F: Fp>(dir: &Path, lines: &str, units: &str, latency: u64) -> String {
+    write_unit_bench::<F>(dir, lines, latency);
+    fs::write(dir.join("fp_units.v"), units).expect("a writable folder");
+    let shell = Command::new("sh").arg(dir.join("run.sh")).output();
     let output = shell.expect("a shell");
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
 const FP_WAIT: &str = include_str!("../../src/fpga/export/rtl/fp_wait.v");
 const FP_UNITS: &str = include_str!("../../src/fpga/export/rtl/fp_units.v");
+const FRONT_END: &str = include_str!("../../src/fpga/export/rtl/front_end.v");
 const FP_SIM: &str = include_str!("../../src/fpga/export/rtl/fp_sim.v");
 
 fn check_units<F: Fp>(latencies: &[u64]) {

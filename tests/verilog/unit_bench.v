@@ -1,5 +1,6 @@
 // Testbench of the floating-point units: every line of units.hex against their results and clocks.
-// A line is the operation (0 add, 1 subtract, 2 multiply, 3 divide), a, b and the result.
+// A line is the operation (0 add, 1 subtract, 2 multiply, 3 divide; with W = 64 also 4: a as binary32,
+// at once), a, b and the result.
 `timescale 1ns/1ns
 
 module unit_bench;
@@ -25,8 +26,10 @@ module unit_bench;
     fp_div #(.W(W), .FTZ(FTZ), .LATENCY(LATENCY)) div (
         .clk(clk), .rst(rst), .req(req && op == 3), .take(take), .a(a), .b(b),
         .done(div_done), .q(div_q));
-    wire         done = op < 2 ? add_done : op == 2 ? mul_done : div_done;
-    wire [W-1:0] q    = op < 2 ? add_q : op == 2 ? mul_q : div_q;
+    wire [31:0]  narrow_q;
+    fp_narrow #(.FTZ(FTZ)) narrow (.a({{(64-W){1'b0}}, a}), .q(narrow_q));
+    wire         done = op == 4 ? clocks == LATENCY : op < 2 ? add_done : op == 2 ? mul_done : div_done;
+    wire [W-1:0] q    = op == 4 ? {{(W-32){1'b0}}, narrow_q} : op < 2 ? add_q : op == 2 ? mul_q : div_q;
 
     always #5 clk = ~clk;
 

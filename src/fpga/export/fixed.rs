@@ -77,6 +77,21 @@ impl FixedExport {
         ]
     }
 
+    /// For each sample 1 where the core stored a word that was beyond the ends of its signal.
+    fn overflows_of_core(&self) -> Vec<i64> {
+        let mut engine = self.config.as_pipeline().engine();
+        let mut before = engine.health().overflows;
+        let mut flags = Vec::new();
+        for pair in self.pairs() {
+            engine.process(pair);
+            let counted = engine.health().overflows;
+            let rises = |name: &SignalName| counted.of(*name) > before.of(*name);
+            flags.push(i64::from(SignalName::ALL.iter().any(rises)));
+            before = counted;
+        }
+        flags
+    }
+
     /// The pairs behind the front end.
     #[must_use]
     pub fn pairs(&self) -> Vec<CodePair> {
@@ -117,6 +132,7 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
         ("in.hex", hex_lines(&words)),
         (TOP_SAMPLES, hex_lines(&export.samples)),
         ("y.hex", hex_lines(&outputs)),
+        ("overflow.hex", hex_lines(&export.overflows_of_core())),
         ("ram_init.hex", before),
         ("ram_final.hex", hex_lines(&pipeline.memories().concat())),
         ("trace.csv", trace),

@@ -137,8 +137,14 @@ module axis_bench;
         for (phase = 0; phase < 4; phase = phase + 1) begin
             way = phase == 0 ? PAUSING : phase[1:0] - 2'd1;
             rstn = 1'b0;
-            s_valid = 1'b0; is_wrong = 1'b0; clear = 1'b0;
-            repeat (2) @(negedge clk);
+            is_wrong = 1'b0; clear = 1'b0;
+            // A source that offers a word during the reset keeps it.
+            s_valid = 1'b1;
+            @(negedge clk);
+            if (s_ready !== 1'b0) fail("tready during a reset", 64'd0, s_ready);
+            if (m_valid !== 1'b0) fail("tvalid during a reset", 64'd0, m_valid);
+            s_valid = 1'b0;
+            @(negedge clk);
             taken = 0; pause = 0; stall = 0; waited = 0; tail = 0; progress = cycle;
             rstn = 1'b1;
             running = 1'b1;

@@ -8,6 +8,7 @@
 //   clocks of the clearing, no sample taken meanwhile, all memories and registers after it;
 //   every word of y.hex against y, in the clock of out_valid;
 //   clocks from taking a sample to out_valid, and to taking the next sample;
+//   the flag of a denominator that is a NaN or not above zero;
 //   memories before the first sample against ram_init.hex, after the last against ram_final.hex;
 //   every clock of trace.csv: state, both memory ports, registers, before the clock edge; and its
 //   place in the sample if the vectors state the latencies of the units and run.sh no others.
@@ -181,6 +182,7 @@
                 if (`DUT.ctrl.state != CLEARING)
                     fail_count("state while clearing", CLEARING, `DUT.ctrl.state);
                 if (in_ready) fail_count("in_ready while clearing", 0, 1);
+                if (out_valid !== 1'b0) fail_count("out_valid while clearing", 0, 1);
                 @(negedge clk);
             end
             if (`DUT.ctrl.state != 4'd0)
@@ -338,6 +340,22 @@
             end
         end
     endtask
+`endif
+
+`ifndef BLACK_BOX
+    // A new denominator is judged in the clock after it was loaded, in the resets before the run too,
+    // where the words are NaN.
+    localparam FRACTION = W == 64 ? 52 : 23;
+    wire [W-1:0] new_den = `DUT.den;
+    wire den_is_nan = (&new_den[W-2:FRACTION]) && (|new_den[FRACTION-1:0]);
+    wire den_is_bad = den_is_nan || new_den[W-1] || new_den == zero;
+    reg  den_loaded;
+    initial den_loaded = 1'b0;
+    always @(posedge clk) begin
+        if (!rst && !failed && `DUT.indefinite !== (den_loaded && den_is_bad))
+            fail_count("indefinite", den_loaded && den_is_bad, `DUT.indefinite);
+        den_loaded <= !rst && `DUT.den_en;
+    end
 `endif
 
 `ifdef BLACK_BOX

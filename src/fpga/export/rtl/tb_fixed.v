@@ -1,6 +1,7 @@
 // Self-checking testbench of a fixed-point core of any kind, constants of params.vh: resets in
-// every state, every word of y, the clocks of every sample, the memories before and after, and every
-// clock of trace.csv. The first mismatch ends the run non-zero.
+// every state, a strobe that is withdrawn, every word of y, the clocks of every sample, in which samples
+// a word was beyond the ends of its signal, the memories before and after, and every clock of trace.csv.
+// The first mismatch ends the run non-zero.
 `timescale 1ps/1ps
 `include "params.vh"
 `include "tb_defaults.vh"
@@ -17,10 +18,12 @@ module `VEC_BENCH;
 
     reg [63:0]    in_words [0:2*SAMPLES-1];
     reg [63:0]    y_words [0:SAMPLES-1];
+    reg [63:0]    beyond_words [0:SAMPLES-1];
     reg [63:0]    init_words [0:WORDS-1];
     reg [63:0]    final_words [0:WORDS-1];
     reg           clk, rst, valid, running, failed;
-    wire          in_ready, out_valid;
+    wire          in_ready, out_valid, overflow, indefinite;
+    reg           beyond;           // since the newest sample was taken
     // Longest path, in characters. Verilator 5.006 holds no longer string.
     reg [8*256-1:0] vec_dir, path;
     wire [63:0]   x_full = in_words[taken < SAMPLES ? 2 * taken : 0];
@@ -32,7 +35,7 @@ module `VEC_BENCH;
 
     `VEC_CORE_MODULE #(`VEC_CORE, .DIV_LATENCY(`VEC_DIV_LATENCY)) dut (
         .clk(clk), .rst(rst), .in_valid(valid), .in_ready(in_ready), .x(x), .d(d),
-        .out_valid(out_valid), .y(y));
+        .out_valid(out_valid), .y(y), .overflow(overflow), .indefinite(indefinite));
 
     always #5 clk = ~clk;
 
@@ -60,7 +63,7 @@ module `VEC_BENCH;
     task check_clearing;
         begin
             for (waited = 0; waited < CLEAR_CLOCKS; waited = waited + 1) begin
-                if (dut.state != CLEAR || in_ready) fail("clearing", CLEAR, dut.state);
+                if (dut.state != CLEAR || in_ready || out_valid) fail("clearing", CLEAR, dut.state);
                 @(negedge clk);
             end
             if (dut.state != 4'd0) fail("after clearing", 0, dut.state);
@@ -76,12 +79,14 @@ module `VEC_BENCH;
 
     initial begin
         clk = 1'b0; rst = 1'b1; valid = 1'b0; running = 1'b0; failed = 1'b0;
-        cycle = 0; taken = 0; given = 0; start = 0; rows = 0;
+        cycle = 0; taken = 0; given = 0; start = 0; rows = 0; beyond = 1'b0;
         if (!$value$plusargs("VEC_DIR=%s", vec_dir)) vec_dir = ".";
         $sformat(path, "%0s/in.hex", vec_dir);
         $readmemh(path, in_words);
         $sformat(path, "%0s/y.hex", vec_dir);
         $readmemh(path, y_words);
+        $sformat(path, "%0s/overflow.hex", vec_dir);
+        $readmemh(path, beyond_words);
         $sformat(path, "%0s/ram_init.hex", vec_dir);
         $readmemh(path, init_words);
         $sformat(path, "%0s/ram_final.hex", vec_dir);
@@ -94,7 +99,8 @@ module `VEC_BENCH;
             $dumpvars(0, dut);
         end
 `endif
-        if (trace_file == 0 || ^y_words[SAMPLES-1] === 1'bx) fail("vectors", 0, 0);
+        if (trace_file == 0 || ^y_words[SAMPLES-1] === 1'bx
+            || ^beyond_words[SAMPLES-1] === 1'bx) fail("vectors", 0, 0);
         repeat (2) @(negedge clk);
         rst = 1'b0;
         check_clearing;
@@ -122,6 +128,13 @@ module `VEC_BENCH;
             valid = 1'b0;
             @(negedge clk);
         end
+        // A strobe of a single clock: nothing is taken.
+        valid = 1'b1;
+        @(negedge clk);
+        valid = 1'b0;
+        @(negedge clk);
+        if (dut.state != 4'd0) fail("withdrawn", 0, dut.state);
+        check_memories(1'b0);
         running = 1'b1;
         valid = 1'b1;
     end
@@ -165,11 +178,39 @@ module `VEC_BENCH;
         end
     endtask
 
+    // A denominator is judged in the clock in which it is stored, a diagonal element of R in that in
+    // which it is written.
+`ifdef VEC_RLS_FIXED
+    wire stores_den = dut.state == 4'd5;
+    wire writes_bad = dut.state == 4'd8 && dut.i == dut.j && dut.rb_wdata <= 0;
+`else
+    wire stores_den = dut.den_en;
+    wire writes_bad = 1'b0;
+`endif
+    reg  judged, stored_den, wrote_bad, was_indefinite;
+    initial judged = 1'b0;
+    always @(posedge clk) begin
+        if (judged && was_indefinite !== (stored_den ? dut.den <= 0 : wrote_bad))
+            fail("indefinite", !was_indefinite, was_indefinite);
+        judged         <= !rst;
+        stored_den     <= stores_den;
+        wrote_bad      <= writes_bad;
+        was_indefinite <= indefinite;
+    end
+
+    task check_overflow;
+        if (taken != 0 && beyond !== beyond_words[taken-1][0])
+            fail("overflow", beyond_words[taken-1], beyond);
+    endtask
+
     wire signed [63:0] y_full = y;
     always @(posedge clk) if (running && !failed) begin
         cycle <= cycle + 1;
         if (dut.state != 4'd0 && !`VEC_CONTROL.stall && rows < `VEC_TRACE_CLOCKS) check_row;
+        beyond <= beyond | overflow;
         if (valid && in_ready) begin
+            check_overflow;
+            beyond <= overflow;
             if (taken != 0 && cycle - start != PERIOD)
                 fail("period", PERIOD, cycle - start);
             start <= cycle;
@@ -185,6 +226,7 @@ module `VEC_BENCH;
             if (given != SAMPLES) fail("results", SAMPLES, given);
             if (dut.state != 4'd0) fail("state, end", 0, dut.state);
             check_memories(1'b1);
+            check_overflow;
             $display("PASS %0s: %0d samples, %0d trace rows", `VEC_KIND_NAME, SAMPLES, rows);
             $finish;
         end

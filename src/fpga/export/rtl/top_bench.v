@@ -2,8 +2,8 @@
 //
 // Samples go in at the board's port, in_codes.hex or samples.hex; checked, the first mismatch ends
 // the run non-zero: every result against y.hex, one sample later with the next-sample register; the
-// clocks from a sample to its pair and from pair to pair, back to back. Before that a reset inside a
-// sample, which must leave nothing behind.
+// clocks from a sample to its pair and from pair to pair, back to back. Before that a reset in the clock
+// in which the core takes a pair, which must leave nothing behind.
 `timescale 1ps/1ps
 `include "params.vh"
 `include "tb_defaults.vh"
@@ -62,12 +62,15 @@ module top_bench;
             fail("vectors, missing or short", 64'd0, 64'd0);
         repeat (2) @(negedge clk);
         rst = 1'b0;
-        // Two samples and a half, then a reset.
+        // Two samples and a half, then a reset in the clock in which a pair is taken.
         valid = 1'b1;
         repeat (5 * `VEC_PERIOD / 2 + 40) @(negedge clk);
+        while (!(top.pair_valid && top.pair_ready)) @(negedge clk);
         rst = 1'b1;
         valid = 1'b0;
         @(negedge clk);
+        if (result_valid !== 1'b0) fail("result_valid after reset", 64'd0, result_valid);
+        if (result !== {RB{1'b0}}) fail("result after reset", 64'd0, result);
         cycle = 0; taken = 0; given = 0; handed = 0;
         last_run = 1'b1;
         rst = 1'b0;
