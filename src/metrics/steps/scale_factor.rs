@@ -8,8 +8,9 @@
 //! derived: every quantity below is linear in the outputs up to a ratio, and each output comes with
 //! its own standard deviation.
 
-use super::nonlinearity::{Nonlinearity, Residual, largest_magnitude};
+use super::nonlinearity::{Nonlinearity, Residual};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::magnitude::LargestOf;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
@@ -224,7 +225,7 @@ pub(crate) fn fit_drifting_scale_factor(
         full_scale_deg_per_h: full_scale,
         nonlinearity: Nonlinearity::of_full_scale(&residuals, full_scale),
         nonlinearity_of_reading: Nonlinearity::of_reading(&residuals),
-        asymmetry: asymmetry(points, (&inputs, &outputs), drift),
+        asymmetry: asymmetry(&pooled(points), (&inputs, &outputs), drift),
         residuals,
     })
 }
@@ -289,6 +290,7 @@ fn residuals(
         .into_iter()
         .flat_map(|sense| of_sense(inputs, sense))
         .collect();
+    let pooled = pooled(points);
     let pairs = inputs.iter().zip(outputs).enumerate();
     pairs
         .map(|(own, (input, output))| {
@@ -298,15 +300,57 @@ fn residuals(
             });
             let weights: Vec<(usize, f64)> = weights.enumerate().collect();
             let (deviation, freedom) = spread_of(&weights, points, drift);
+            let (by_all, _) = spread_of(&weights, &pooled, drift);
             Residual {
                 value_deg_per_h: output - line.at(*input),
                 deviation_deg_per_h: deviation,
                 degrees_of_freedom: freedom,
+                pooled_deviation_deg_per_h: by_all,
                 reading_deg_per_h: line.at(*input),
                 is_moved: moved.contains(&own),
             }
         })
         .collect()
+}
+
+/// The points with the noise that they have in common, as far as it is in common.
+///
+/// The variance of each is `m + w (s^2 - m)`, m their mean, with the part w of the scatter of the variances
+/// that is beyond that of estimates of so many degrees of freedom. Each from ten blocks, the largest of many
+/// deviations is large by chance, and would make the largest distance from the line scatter by more than it
+/// does.
+///
+/// Source: Buehlmann, ASTIN Bulletin 4 (1967).
+fn pooled(points: &[RatePoint]) -> Vec<RatePoint> {
+    let variances: Vec<f64> = points
+        .iter()
+        .map(|point| point.deviation_deg_per_h.powi(2))
+        .collect();
+    let freedoms: Vec<f64> = points
+        .iter()
+        .map(|point| point.degrees_of_freedom)
+        .collect();
+    let (mean, scatter) = (
+        interval::mean(&variances),
+        interval::sample_variance(&variances),
+    );
+    let own_freedom = interval::mean(&freedoms);
+    if !(scatter > 0.0 && own_freedom.is_finite()) {
+        return points.to_vec();
+    }
+    let by_chance = 2.0 / own_freedom.max(1.0);
+    let beyond = (scatter - by_chance * mean * mean) / (1.0 + by_chance);
+    let own = (beyond / scatter).clamp(0.0, 1.0);
+    let count = points.len() as f64;
+    let with = |(point, variance): (&RatePoint, &f64)| {
+        let by_all = (1.0 - own * own) / (count * own_freedom);
+        RatePoint {
+            deviation_deg_per_h: (mean + own * (variance - mean)).sqrt(),
+            degrees_of_freedom: (own * own / point.degrees_of_freedom + by_all).recip(),
+            ..*point
+        }
+    };
+    points.iter().zip(&variances).map(with).collect()
 }
 
 /// `|K+ - K-| / ((K+ + K-) / 2)` of separate lines with offsets of their own.
@@ -337,7 +381,7 @@ fn asymmetry(
     let (deviation, _) = spread_of(&parts, points, drift);
     let size = (difference.abs(), deviation / mean.abs());
     Some(Asymmetry {
-        value: largest_magnitude(&[size], 0),
+        value: LargestOf::of(&[size]),
         positive,
         negative,
     })
