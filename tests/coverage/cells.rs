@@ -72,8 +72,12 @@ const AT_ZERO: [&str; 1] = ["overshoot"];
 
 /// Cells whose interval comes from few runs of the filter on other noise, by motion, channel and metric:
 /// Student's t of so many degrees of freedom is wider than the normal law, and their width is judged
-/// against it. Runs of a tenth of a swing show what noise left in the weights before it has faded.
-const OF_FEW_RUNS: [(&str, &str, &str, f64); 1] = [("swing", "lms", "noise_gain", 6.0)];
+/// against it. Runs of a tenth of a swing show what noise left in the weights, and how it fades.
+const OF_FEW_RUNS: [(&str, &str, &str, f64); 3] = [
+    ("swing", "lms", "noise_gain", 6.0),
+    ("swing", "lms", "dc_gain", 6.0),
+    ("swing", "lms", "mean_ratio", 6.0),
+];
 
 /// Cells whose coverage alone is judged, as that of [`NOT_NORMAL`]: half a second after the last step is six
 /// blocks, of which Student's t is as wide as it covers.
