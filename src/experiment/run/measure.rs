@@ -224,9 +224,11 @@ impl Cut<'_> {
         &self,
         filter: &FinishedFilter,
         words: (&[f64], &[f64]),
+        facts: &FilterFacts,
     ) -> Option<Vec<StepFigures>> {
+        let motion = &self.settings.motion;
         let figures = |output: &[f64], input: &[f64], dc_gain: f64| {
-            StepFigures::of(&self.of(output, input), &self.settings.motion, dc_gain)
+            StepFigures::of(&self.of(output, input), motion, Some(facts), dc_gain)
         };
         figures_of_other_runs(filter, words, self.length, self.sample_period_s, figures)
     }
@@ -234,8 +236,7 @@ impl Cut<'_> {
     /// How far the slow noise of the gyro moves figures of steps from seed to seed.
     fn by_slow_noise(&self, facts: &FilterFacts) -> Option<StepFigures> {
         let words = self.record.filter_input_deg_per_h();
-        let gain = facts.dc_gain_adapted?;
-        StepFigures::by_slow_noise(&self.of(words, words), &self.settings.motion, gain)
+        StepFigures::by_slow_noise(&self.of(words, words), &self.settings.motion, facts)
     }
 
     /// Variance over seeds of the slow noise in the mean of the record, (deg/h)^2.
@@ -294,7 +295,7 @@ impl Cut<'_> {
                 };
                 let mut metrics = self.measure(&words.output_deg_per_h, input, Some(&facts));
                 if let Some(words) = on_motion.filter(|_| self.moves_weights_in_steps(&facts)) {
-                    let runs = self.figures_of_other_runs(filter, words);
+                    let runs = self.figures_of_other_runs(filter, words, &facts);
                     metrics.scatter_over_runs(runs.as_deref(), self.by_slow_noise(&facts));
                 }
                 if let Some(found) = self.black_box(filter, words, input) {

@@ -4,6 +4,7 @@ pub(super) mod blocks;
 pub(super) mod fit_sheet;
 pub(super) mod influence;
 pub(super) mod interval;
+pub(super) mod magnitude;
 pub(super) mod missing;
 pub(super) mod outlier_sheet;
 pub(super) mod paired;

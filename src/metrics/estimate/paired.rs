@@ -126,6 +126,11 @@ impl MeanScatter {
         Self::of_blocks(differences, density, REACHES_PER_KNOWN_BLOCK * reach, cycle)
     }
 
+    /// Of a density and ends that are both known.
+    pub(crate) fn known(density: Spread, ends: Spread) -> Self {
+        Self { density, ends }
+    }
+
     /// The same with the ends of a response in closed form, where the values hold too few blocks to show
     /// their own.
     ///
@@ -192,6 +197,57 @@ fn ends_of_response(response: &[f64], input: &[f64], reach: usize) -> Spread {
         variance: 2.0 * end.max(0.0),
         freedom: input.len() as f64 / (lags + 1) as f64,
     }
+}
+
+/// E of the real and the imaginary part of what a response makes of its input at a swing's frequency, less
+/// its value there times that.
+///
+/// As [`ends_of_response`], with `S_k = h_k + h_(k+1) exp(-i w) + h_(k+2) exp(-2 i w) + ...` of the word k
+/// before either end, turned by the phase at that end. Blocks of whole cycles end within half a sample of
+/// this phase: next to where the one part vanishes they show that half sample.
+///
+/// * `angular_per_sample`: frequency of the swing, rad.
+/// * `phases_rad`: of the swing in the output at the first sample and behind the last.
+pub(crate) fn ends_about_swing(
+    response: &[f64],
+    (input, reach): (&[f64], usize),
+    angular_per_sample: f64,
+    phases_rad: [f64; 2],
+) -> [Spread; 2] {
+    let (sine, cosine) = angular_per_sample.sin_cos();
+    let later = response.iter().skip(1).rev();
+    let sums: Vec<[f64; 2]> = later
+        .scan([0.0, 0.0], |[re, im], weight| {
+            (*re, *im) = (
+                weight + cosine * *re + sine * *im,
+                cosine * *im - sine * *re,
+            );
+            Some([*re, *im])
+        })
+        .collect();
+    let lags = reach.min(sums.len().saturating_sub(1)).min(input.len() / 2);
+    let colour = covariance_at_lags(input, lags);
+    let power = |values: &[f64]| {
+        let of_lag = |(lag, covariance): (usize, &f64)| {
+            let pairs = values.iter().zip(values.iter().skip(lag));
+            let product: f64 = pairs.map(|(one, other)| one * other).sum();
+            let both = if lag == 0 { 1.0 } else { 2.0 };
+            both * covariance * product
+        };
+        colour.iter().enumerate().map(of_lag).sum::<f64>().max(0.0)
+    };
+    let mut variances = [0.0, 0.0];
+    for phase in phases_rad {
+        let (s, c) = phase.sin_cos();
+        let real: Vec<f64> = sums.iter().map(|[re, im]| re * c + im * s).collect();
+        let imaginary: Vec<f64> = sums.iter().map(|[re, im]| im * c - re * s).collect();
+        variances[0] += power(&real);
+        variances[1] += power(&imaginary);
+    }
+    variances.map(|variance| Spread {
+        variance,
+        freedom: input.len() as f64 / (lags + 1) as f64,
+    })
 }
 
 /// Spectral density of values at zero frequency, variance times samples.
@@ -312,6 +368,41 @@ mod tests {
             (stated / expected - 1.0).abs() < 0.05,
             "{stated} {expected}"
         );
+    }
+
+    #[test]
+    fn the_ends_of_a_response_about_a_swing_are_what_it_has_beside_its_input() {
+        let mut state = 13;
+        let (taps, count, trials, angular) = (8, 500, 400, 0.11_f64);
+        let response = vec![1.0 / taps as f64; taps];
+        let phases = [0.3, 0.3 + angular * count as f64];
+        let at_frequency = (0..taps).fold([0.0, 0.0], |[re, im], age| {
+            let (s, c) = (angular * age as f64).sin_cos();
+            [re + c / taps as f64, im - s / taps as f64]
+        });
+        let mut found = [0.0, 0.0];
+        let mut stated = [0.0, 0.0];
+        for _ in 0..trials {
+            let white: Vec<f64> = (0..count + taps).map(|_| normal(&mut state)).collect();
+            let mut sums = [0.0, 0.0];
+            for at in 0..count {
+                let own = interval::mean(&white[at + 1..=at + taps]);
+                let [re, im] = at_frequency.map(|part| part * white[at + taps]);
+                let (s, c) = (phases[0] + angular * at as f64).sin_cos();
+                sums[0] += (own - re) * c - im * s;
+                sums[1] += -im * c - (own - re) * s;
+            }
+            let ends = ends_about_swing(&response, (&white[taps..], 3), angular, phases);
+            for part in [0, 1] {
+                found[part] += sums[part] * sums[part] / f64::from(trials);
+                stated[part] += ends[part].variance / f64::from(trials);
+            }
+        }
+        // Four standard errors of 400 squares.
+        for part in [0, 1] {
+            let ratio = found[part] / stated[part];
+            assert!((ratio - 1.0).abs() < 0.3, "{part}: {ratio}");
+        }
     }
 
     #[test]

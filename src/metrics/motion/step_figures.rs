@@ -10,18 +10,24 @@ use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::key::metric::MetricKey;
-use crate::metrics::record::{Motion, Record};
+use crate::metrics::noise::level::NOISE_GAIN;
+use crate::metrics::noise::truth_response::without_motion;
+use crate::metrics::record::{FilterFacts, Motion, Record, SAMPLES_MIN};
+use crate::metrics::steps::scale_factor::ScaleFactorFigures;
+use crate::metrics::steps::settling::tail_start;
 use crate::metrics::steps::staircase::{
-    SCALE_FACTOR_ERROR, scale_factor_drift_ppm, scale_factor_error_ppm,
+    SCALE_FACTOR_ASYMMETRY, SCALE_FACTOR_ERROR, SCALE_FACTOR_NONLINEARITY,
+    SCALE_FACTOR_NONLINEARITY_OF_READING, scale_factor_figures, scale_factor_figures_by_drift,
 };
-use crate::metrics::theory::learning::NOT_FROM_ONE_RECORD;
+use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::trial::dc_gain::DC_GAIN;
+use crate::units::ratio_to_ppm;
 
 /// A metric, and its value in a run; none where the run does not give it.
 type Figure = (&'static MetricKey, fn(&StepFigures) -> Option<f64>);
 
 /// What runs on other noise give the intervals of.
-const FIGURES: [Figure; 5] = [
+const FIGURES: [Figure; 9] = [
     (&MEAN, |of| Some(of.mean_deg_per_h)),
     // The true rate is that of the record.
     (&MEAN_ERROR, |of| Some(of.mean_deg_per_h)),
@@ -29,7 +35,19 @@ const FIGURES: [Figure; 5] = [
         Some(of.tracking_error_rms_deg_per_h)
     }),
     (&DC_GAIN, |of| Some(of.dc_gain)),
-    (&SCALE_FACTOR_ERROR, |of| of.scale_factor_error_ppm),
+    (&NOISE_GAIN, |of| of.noise_gain),
+    (&SCALE_FACTOR_ERROR, |of| {
+        Some(ratio_to_ppm(of.scale_factor?.factor))
+    }),
+    (&SCALE_FACTOR_NONLINEARITY, |of| {
+        Some(ratio_to_ppm(of.scale_factor?.nonlinearity))
+    }),
+    (&SCALE_FACTOR_NONLINEARITY_OF_READING, |of| {
+        Some(ratio_to_ppm(of.scale_factor?.nonlinearity_of_reading))
+    }),
+    (&SCALE_FACTOR_ASYMMETRY, |of| {
+        Some(ratio_to_ppm(of.scale_factor?.asymmetry?))
+    }),
 ];
 
 /// Figures of a filter over steps, without intervals: as [`measure`](fn@super::super::measure::measure)
@@ -39,17 +57,30 @@ pub struct StepFigures {
     mean_deg_per_h: f64,
     tracking_error_rms_deg_per_h: f64,
     dc_gain: f64,
+    /// None where too few samples have settled.
+    noise_gain: Option<f64>,
     /// None where the dwells give no line.
-    scale_factor_error_ppm: Option<f64>,
+    scale_factor: Option<ScaleFactorFigures>,
 }
 
 impl StepFigures {
     /// Those of a record of steps; none of another motion, and where the true rate is not known.
     ///
+    /// * `filter`: what is known of the filter in the record that the runs are like.
     /// * `dc_gain`: that of the filter in this record.
     #[must_use]
-    pub fn of(record: &Record, motion: &Motion, dc_gain: f64) -> Option<Self> {
-        let Motion::Steps { staircase, .. } = motion else {
+    pub fn of(
+        record: &Record,
+        motion: &Motion,
+        filter: Option<&FilterFacts>,
+        dc_gain: f64,
+    ) -> Option<Self> {
+        let Motion::Steps {
+            staircase,
+            last_step_index,
+            ..
+        } = motion
+        else {
             return None;
         };
         let (channel, truth) = (record.channel_deg_per_h, record.truth()?);
@@ -59,24 +90,53 @@ impl StepFigures {
             mean_deg_per_h: interval::mean(channel),
             tracking_error_rms_deg_per_h: square.sqrt(),
             dc_gain,
-            scale_factor_error_ppm: scale_factor_error_ppm(record, staircase),
+            noise_gain: settled_noise_gain(record, *last_step_index, filter),
+            scale_factor: scale_factor_figures(record, staircase),
         })
     }
 
     /// Their standard deviations over seeds by slow noise, of which neither a record nor runs on its noise
-    /// show much: that of a filter with this gain for a rate that is there from the first word on.
+    /// show much: that of a filter with this gain for a rate that is there from the first word on, and of
+    /// its weights, which a rate that all words share moves.
     #[must_use]
-    pub fn by_slow_noise(record: &Record, motion: &Motion, dc_gain_adapted: f64) -> Option<Self> {
+    pub fn by_slow_noise(record: &Record, motion: &Motion, facts: &FilterFacts) -> Option<Self> {
         let Motion::Steps { staircase, .. } = motion else {
             return None;
         };
+        let by_weights = facts.learning.as_ref().and_then(Learning::gain_by_drift);
         Some(Self {
-            mean_deg_per_h: dc_gain_adapted * record.drift_variance().sqrt(),
+            mean_deg_per_h: facts.dc_gain_adapted? * record.drift_variance().sqrt(),
             tracking_error_rms_deg_per_h: 0.0,
-            dc_gain: 0.0,
-            scale_factor_error_ppm: scale_factor_drift_ppm(record, staircase),
+            dc_gain: by_weights.unwrap_or(0.0),
+            noise_gain: None,
+            scale_factor: scale_factor_figures_by_drift(record, staircase),
         })
     }
+}
+
+/// Variance of the channel over that of raw where the last step has settled, each about its mean.
+fn settled_noise_gain(
+    record: &Record,
+    last_step_index: usize,
+    filter: Option<&FilterFacts>,
+) -> Option<f64> {
+    let samples = record.channel_deg_per_h.len();
+    let start = tail_start(samples, last_step_index.min(samples));
+    if samples - start < SAMPLES_MIN {
+        return None;
+    }
+    let still = without_motion(record, start, filter);
+    let (own, raw) = still.as_ref().map_or_else(
+        || {
+            (
+                &record.channel_deg_per_h[start..],
+                &record.raw_deg_per_h[start..],
+            )
+        },
+        |(own, raw)| (own.as_slice(), raw.as_slice()),
+    );
+    let gain = interval::sample_variance(own) / interval::sample_variance(raw);
+    gain.is_finite().then_some(gain)
 }
 
 impl ChannelMetrics {
@@ -187,7 +247,7 @@ mod tests {
             bridges: Vec::new(),
         };
         let metrics = measure(&record, &settings, Some(&facts()));
-        let figures = StepFigures::of(&record, &settings.motion, 0.9);
+        let figures = StepFigures::of(&record, &settings.motion, Some(&facts()), 0.9);
         (metrics, figures.unwrap())
     }
 
@@ -196,9 +256,19 @@ mod tests {
         let (metrics, figures) = measured();
         let mean = interval::mean(&RATES);
         for (key, figure) in FIGURES {
-            let shift = if key == &MEAN_ERROR { mean } else { 0.0 };
+            let Some(own) = figure(&figures) else {
+                assert!(metrics.get(key).is_none(), "{}", key.name);
+                continue;
+            };
+            // What is the same in all runs is left out.
+            let shift = if key == &MEAN_ERROR {
+                mean
+            } else if key == &SCALE_FACTOR_ERROR {
+                ratio_to_ppm(1.0)
+            } else {
+                0.0
+            };
             let value = metrics.get(key).unwrap().estimate.value + shift;
-            let own = figure(&figures).unwrap();
             assert!(
                 (own - value).abs() <= 1e-9 * value.abs(),
                 "{}: {own} {value}",

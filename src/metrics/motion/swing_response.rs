@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::mean::{filter_reach, rounding_density};
+use super::mean::{GYRO_REACH, filter_reach, rounding_density};
 use crate::metrics::estimate::influence::{Learned, Spread};
-use crate::metrics::estimate::paired::{MeanScatter, delayed};
+use crate::metrics::estimate::paired::{MeanScatter, delayed, ends_about_swing};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::fit::{SwingClock, SwingFit};
@@ -214,13 +214,18 @@ fn paired_scatter(
     };
     let reach = filter_reach(filter);
     let cycle = 1.0 / (clock.frequency_hz * clock.sample_period_s);
+    let angular = TAU * clock.frequency_hz * clock.sample_period_s;
     if let Some(facts) = filter.filter(|facts| facts.given().is_some()) {
         // The response of given weights is what the fits show but for the ends.
         let density = rounding_density((&own, &raw), facts).scaled(scale / 2.0_f64.sqrt());
+        if let Some(response) = facts.response() {
+            let phases = [0, own.len()].map(|at| clock.phase_rad(at) + channel.phase_rad);
+            let ends = ends_about_swing(&response, (&raw, GYRO_REACH), angular, phases);
+            return ends.map(|ends| MeanScatter::known(density, ends.scaled(scale)));
+        }
         return parts(&mut raw.iter().copied(), turned)
             .map(|part| MeanScatter::of_known_density(&part, density, reach, Some(cycle)));
     }
-    let angular = TAU * clock.frequency_hz * clock.sample_period_s;
     let delay = filter.map_or(0.0, FilterFacts::delay_at_dc_samples);
     let plain = parts(&mut raw.iter().copied(), turned);
     let aligned = parts(&mut delayed(&raw, delay), turned + angular * delay);

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::interval::{NORMAL_QUANTILE, round_to_count};
+use crate::metrics::estimate::interval::round_to_count;
+use crate::metrics::estimate::magnitude::RootOfPower;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
@@ -308,8 +309,8 @@ impl SwingFit {
     ///
     /// `sqrt(sum of squared amplitudes of harmonics 2..=5) / amplitude`, harmonics at or above half
     /// the sampling rate left out. The power that noise alone would put into the harmonics, known
-    /// from the scatter over the sub-blocks, is subtracted; the interval is the normal one of the
-    /// remaining power, cut at zero.
+    /// from the scatter over the sub-blocks, is subtracted. The interval is that of the mean of such a
+    /// root, which noise alone keeps above zero.
     #[must_use]
     pub fn harmonic_distortion_percent(&self, residuals: &[f64]) -> Estimate {
         let highest = (1..=HARMONICS_MAX)
@@ -320,25 +321,14 @@ impl SwingFit {
             .windows(2)
             .map(|ends| self.harmonics(&residuals[ends[0]..ends[1]], ends[0], highest))
             .collect();
-        let (mut power, mut noise_power, mut noise_square) = (0.0, 0.0, 0.0);
-        let mut spread = 0.0;
-        for coefficient in 0..parts[0].len() {
-            let values: Vec<f64> = parts.iter().map(|part| part[coefficient]).collect();
-            let mean = interval::mean(&values);
-            let variance = interval::sample_variance(&values) / values.len() as f64;
-            power += mean * mean;
-            noise_power += variance;
-            noise_square += variance * variance;
-            spread += 4.0 * variance * (mean * mean - variance).max(0.0);
-        }
-        let half_width = NORMAL_QUANTILE * (spread + 2.0 * noise_square).sqrt();
-        let centre = power - noise_power;
-        let percent = |square: f64| 100.0 * square.max(0.0).sqrt() / self.whole.amplitude;
-        Estimate::with_interval(
-            percent(centre),
-            percent(centre - half_width),
-            percent(centre + half_width),
-        )
+        let components: Vec<(f64, f64)> = (0..parts[0].len())
+            .map(|coefficient| {
+                let values: Vec<f64> = parts.iter().map(|part| part[coefficient]).collect();
+                let variance = interval::sample_variance(&values) / values.len() as f64;
+                (interval::mean(&values), variance)
+            })
+            .collect();
+        RootOfPower::of(&components, parts.len()).scaled(100.0 / self.whole.amplitude)
     }
 
     /// Cosine and sine amplitudes of harmonics 2 ..= highest in one sub-block.

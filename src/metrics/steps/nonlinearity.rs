@@ -5,13 +5,11 @@
 
 use statrs::function::erf::erf;
 
+use crate::metrics::estimate::magnitude::{LargestOf, REACH};
 use crate::metrics::estimate::value::Estimate;
 
 /// Intervals of Simpson's rule in [`expected_largest`]; the error is then below 1e-6.
 const INTERVALS: u32 = 400;
-
-/// Range of that integral in standard deviations: beyond it nothing of 1e5 points is left.
-const REACH: f64 = 8.0;
 
 /// Distance of one point from the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +21,9 @@ pub struct Residual {
     pub deviation_deg_per_h: f64,
     /// Degrees of freedom of that standard deviation.
     pub degrees_of_freedom: f64,
+    /// The same standard deviation by the noise that the points have in common, as far as their own differ
+    /// by no more than chance, deg/h.
+    pub pooled_deviation_deg_per_h: f64,
     /// The line at the point, deg/h.
     pub reading_deg_per_h: f64,
     /// Whether the table moved, so that there is a reading to compare with.
@@ -59,74 +60,24 @@ impl Nonlinearity {
 
     /// The largest of the residuals over their `divisor`; those without one are left out.
     fn largest(residuals: &[Residual], divisor: impl Fn(&Residual) -> Option<f64>) -> Self {
-        let parts: Vec<(f64, f64)> = residuals
+        let parts: Vec<(f64, f64, f64)> = residuals
             .iter()
             .filter_map(|residual| {
                 let divisor = divisor(residual)?;
                 let size = residual.value_deg_per_h.abs() / divisor;
-                Some((size, residual.deviation_deg_per_h / divisor))
+                let pooled = residual.pooled_deviation_deg_per_h / divisor;
+                let own = residual.deviation_deg_per_h / divisor;
+                Some((size, pooled, own))
             })
             .collect();
-        let deviations: Vec<f64> = parts.iter().map(|part| part.1).collect();
+        let sizes: Vec<(f64, f64)> = parts.iter().map(|part| (part.0, part.1)).collect();
+        let deviations: Vec<f64> = parts.iter().map(|part| part.2).collect();
         Self {
-            value: largest_magnitude(&parts, LINE_PARAMETERS),
+            value: LargestOf::of(&sizes),
             noise_floor: expected_largest(&deviations),
         }
     }
 }
-
-/// Parameters of a line, which its residuals lack in freedom.
-const LINE_PARAMETERS: usize = 2;
-
-/// The largest of normal deviates' magnitudes with the interval of its mean over many records.
-///
-/// * `parts`: magnitude and standard deviation of each.
-/// * `fitted`: parameters fitted to them, in which they have no freedom.
-///
-/// The mean of a deviate is what is left of its magnitude once the share that noise has in the sum
-/// of all squares is taken off (James and Stein), so that the largest of pure noise has the interval
-/// that noise gives it and a lone large one its own. With the quantiles q and the mean m of the
-/// largest under these means the interval is `[x - (q_high - m), x + (m - q_low)]`.
-pub(crate) fn largest_magnitude(parts: &[(f64, f64)], fitted: usize) -> Estimate {
-    let value = parts.iter().fold(0.0_f64, |max, part| max.max(part.0));
-    let noisy: Vec<(f64, f64)> = parts.iter().copied().filter(|part| part.1 > 0.0).collect();
-    if noisy.is_empty() {
-        return Estimate::exact(value);
-    }
-    let squares: f64 = noisy
-        .iter()
-        .map(|(size, deviation)| (size / deviation).powi(2))
-        .sum();
-    let freedom = noisy.len().saturating_sub(fitted).max(1) as f64;
-    let kept = (1.0 - freedom / squares).max(0.0);
-    let below = |x: f64| -> f64 {
-        let inside = noisy.iter().map(|(size, deviation)| {
-            let scale = deviation * std::f64::consts::SQRT_2;
-            0.5 * (erf((x - kept * size) / scale) + erf((x + kept * size) / scale))
-        });
-        inside.product()
-    };
-    let reach = noisy.iter().fold(0.0_f64, |max, (size, deviation)| {
-        max.max(kept * size + REACH * deviation)
-    });
-    let step = reach / f64::from(INTERVALS);
-    let (mut mean, mut low, mut high) = (0.0, 0.0, 0.0);
-    for node in 0..INTERVALS {
-        let x = (f64::from(node) + 0.5) * step;
-        let part = below(x);
-        mean += (1.0 - part) * step;
-        low += if part < TAIL { step } else { 0.0 };
-        high += if part < 1.0 - TAIL { step } else { 0.0 };
-    }
-    Estimate::with_interval(
-        value,
-        (value - (high - mean)).max(0.0),
-        value + (mean - low),
-    )
-}
-
-/// Probability beyond either end of an interval.
-const TAIL: f64 = 0.025;
 
 /// Expected largest magnitude of independent normal deviates of these standard deviations.
 ///

@@ -8,8 +8,9 @@
 //! derived: every quantity below is linear in the outputs up to a ratio, and each output comes with
 //! its own standard deviation.
 
-use super::nonlinearity::{Nonlinearity, Residual, largest_magnitude};
+use super::nonlinearity::{Nonlinearity, Residual};
 use crate::metrics::estimate::interval;
+use crate::metrics::estimate::magnitude::LargestOf;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::value::Estimate;
 
@@ -111,6 +112,13 @@ fn of_sense(inputs: &[f64], sense: f64) -> impl Iterator<Item = usize> {
         .fold(0.0_f64, |max, input| max.max(input.abs()));
     let still = DISTINCT_PER_SPAN * largest;
     (0..inputs.len()).filter(move |&index| sense * inputs[index] > still)
+}
+
+/// Indices of the inputs at which the table moves.
+fn moved(inputs: &[f64]) -> impl Iterator<Item = usize> {
+    [1.0, -1.0]
+        .into_iter()
+        .flat_map(|sense| of_sense(inputs, sense))
 }
 
 /// Least-squares line through points with its mean subtracted first, so that no digits are lost.
@@ -224,31 +232,85 @@ pub(crate) fn fit_drifting_scale_factor(
         full_scale_deg_per_h: full_scale,
         nonlinearity: Nonlinearity::of_full_scale(&residuals, full_scale),
         nonlinearity_of_reading: Nonlinearity::of_reading(&residuals),
-        asymmetry: asymmetry(points, (&inputs, &outputs), drift),
+        asymmetry: senses((&inputs, &outputs)).map(|senses| senses.asymmetry(points, drift)),
         residuals,
     })
 }
 
-/// Slope K of the same line alone.
-pub(crate) fn slope(points: &[RatePoint], rest: StaticZero) -> Result<f64, Unavailable> {
-    line_above_rest(points, rest).map(|(_, _, line)| line.slope)
+/// What a scale factor test says in numbers alone, or how far these scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ScaleFactorFigures {
+    /// Slope K.
+    pub(crate) factor: f64,
+    /// Largest residual over the largest output.
+    pub(crate) nonlinearity: f64,
+    /// Largest residual over the line there.
+    pub(crate) nonlinearity_of_reading: f64,
+    /// Difference of the senses, if each has two distinct rates.
+    pub(crate) asymmetry: Option<f64>,
 }
 
-/// Standard deviation of that slope by slow noise alone.
-pub(crate) fn slope_deviation(
+/// The values that a fit has, without intervals.
+pub(crate) fn figures(
+    points: &[RatePoint],
+    rest: StaticZero,
+) -> Result<ScaleFactorFigures, Unavailable> {
+    let (inputs, outputs, line) = line_above_rest(points, rest)?;
+    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
+    let distance = |at: usize| (outputs[at] - line.at(inputs[at])).abs();
+    let largest = (0..inputs.len()).map(distance).fold(0.0, f64::max);
+    let of_reading = moved(&inputs).map(|at| distance(at) / line.at(inputs[at]).abs());
+    let senses = senses((&inputs, &outputs));
+    Ok(ScaleFactorFigures {
+        factor: line.slope,
+        nonlinearity: largest / full_scale,
+        nonlinearity_of_reading: of_reading.fold(0.0, f64::max),
+        asymmetry: senses.map(|senses| senses.difference().abs()),
+    })
+}
+
+/// Standard deviations of these by slow noise alone: of the largest residuals as they are.
+pub(crate) fn figures_by_drift(
     points: &[RatePoint],
     rest: StaticZero,
     drift: DriftCovariance,
-) -> Result<f64, Unavailable> {
-    let (inputs, _, line) = line_above_rest(points, rest)?;
+) -> Result<ScaleFactorFigures, Unavailable> {
+    let (inputs, outputs, line) = line_above_rest(points, rest)?;
     let quiet = |point: &RatePoint| RatePoint {
         deviation_deg_per_h: 0.0,
         ..*point
     };
     let quiet: Vec<RatePoint> = points.iter().map(quiet).collect();
+    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
     let weights = inputs.iter().map(|input| line.slope_weight(*input));
     let weights: Vec<(usize, f64)> = weights.enumerate().collect();
-    Ok(spread_of(&weights, &quiet, drift).0)
+    let residuals = residuals(&quiet, (&inputs, &outputs), &line, drift);
+    let of_largest = |divisor: &dyn Fn(&Residual) -> f64| {
+        let sizes = residuals.iter().map(|residual| {
+            let over = divisor(residual);
+            let size = residual.value_deg_per_h.abs() / over;
+            (size, residual.deviation_deg_per_h / over)
+        });
+        sizes
+            .fold(
+                (0.0, 0.0),
+                |most, part| if part.0 > most.0 { part } else { most },
+            )
+            .1
+    };
+    let senses = senses((&inputs, &outputs));
+    Ok(ScaleFactorFigures {
+        factor: spread_of(&weights, &quiet, drift).0,
+        nonlinearity: of_largest(&|_| full_scale),
+        nonlinearity_of_reading: of_largest(&|residual| {
+            if residual.is_moved {
+                residual.reading_deg_per_h.abs()
+            } else {
+                f64::INFINITY
+            }
+        }),
+        asymmetry: senses.map(|senses| senses.deviation(&quiet, drift)),
+    })
 }
 
 /// Inputs and outputs less those at rest, and the line through them.
@@ -285,10 +347,8 @@ fn residuals(
     drift: DriftCovariance,
 ) -> Vec<Residual> {
     let count = inputs.len();
-    let moved: Vec<usize> = [1.0, -1.0]
-        .into_iter()
-        .flat_map(|sense| of_sense(inputs, sense))
-        .collect();
+    let moved: Vec<usize> = moved(inputs).collect();
+    let pooled = pooled(points);
     let pairs = inputs.iter().zip(outputs).enumerate();
     pairs
         .map(|(own, (input, output))| {
@@ -298,10 +358,12 @@ fn residuals(
             });
             let weights: Vec<(usize, f64)> = weights.enumerate().collect();
             let (deviation, freedom) = spread_of(&weights, points, drift);
+            let (by_all, _) = spread_of(&weights, &pooled, drift);
             Residual {
                 value_deg_per_h: output - line.at(*input),
                 deviation_deg_per_h: deviation,
                 degrees_of_freedom: freedom,
+                pooled_deviation_deg_per_h: by_all,
                 reading_deg_per_h: line.at(*input),
                 is_moved: moved.contains(&own),
             }
@@ -309,12 +371,56 @@ fn residuals(
         .collect()
 }
 
-/// `|K+ - K-| / ((K+ + K-) / 2)` of separate lines with offsets of their own.
-fn asymmetry(
-    points: &[RatePoint],
-    (inputs, outputs): (&[f64], &[f64]),
-    drift: DriftCovariance,
-) -> Option<Asymmetry> {
+/// The points with the noise that they have in common, as far as it is in common.
+///
+/// The variance of each is `m + w (s^2 - m)`, m their mean, with the part w of the scatter of the variances
+/// that is beyond that of estimates of so many degrees of freedom. Each from ten blocks, the largest of many
+/// deviations is large by chance, and would make the largest distance from the line scatter by more than it
+/// does.
+///
+/// Source: Buehlmann, ASTIN Bulletin 4 (1967).
+fn pooled(points: &[RatePoint]) -> Vec<RatePoint> {
+    let variances: Vec<f64> = points
+        .iter()
+        .map(|point| point.deviation_deg_per_h.powi(2))
+        .collect();
+    let freedoms: Vec<f64> = points
+        .iter()
+        .map(|point| point.degrees_of_freedom)
+        .collect();
+    let (mean, scatter) = (
+        interval::mean(&variances),
+        interval::sample_variance(&variances),
+    );
+    let own_freedom = interval::mean(&freedoms);
+    if !(scatter > 0.0 && own_freedom.is_finite()) {
+        return points.to_vec();
+    }
+    let by_chance = 2.0 / own_freedom.max(1.0);
+    let beyond = (scatter - by_chance * mean * mean) / (1.0 + by_chance);
+    let own = (beyond / scatter).clamp(0.0, 1.0);
+    let count = points.len() as f64;
+    let with = |(point, variance): (&RatePoint, &f64)| {
+        let by_all = (1.0 - own * own) / (count * own_freedom);
+        RatePoint {
+            deviation_deg_per_h: (mean + own * (variance - mean)).sqrt(),
+            degrees_of_freedom: (own * own / point.degrees_of_freedom + by_all).recip(),
+            ..*point
+        }
+    };
+    points.iter().zip(&variances).map(with).collect()
+}
+
+/// Separate lines of the two senses, with offsets of their own.
+struct Senses {
+    positive: f64,
+    negative: f64,
+    /// Index of each point and its weight in the difference of the slopes.
+    weights: Vec<(usize, f64)>,
+}
+
+/// The lines of both senses, if each has two distinct rates.
+fn senses((inputs, outputs): (&[f64], &[f64])) -> Option<Senses> {
     let sense = |sense: f64| {
         let own: Vec<usize> = of_sense(inputs, sense).collect();
         let own_inputs: Vec<f64> = own.iter().map(|&index| inputs[index]).collect();
@@ -330,17 +436,41 @@ fn asymmetry(
             (line.slope, weighted)
         })
     };
-    let ((positive, mut parts), (negative, others)) = (sense(1.0)?, sense(-1.0)?);
-    parts.extend(others);
-    let mean = 0.5 * (positive + negative);
-    let difference = (positive - negative) / mean;
-    let (deviation, _) = spread_of(&parts, points, drift);
-    let size = (difference.abs(), deviation / mean.abs());
-    Some(Asymmetry {
-        value: largest_magnitude(&[size], 0),
+    let ((positive, mut weights), (negative, others)) = (sense(1.0)?, sense(-1.0)?);
+    weights.extend(others);
+    Some(Senses {
         positive,
         negative,
+        weights,
     })
+}
+
+impl Senses {
+    fn mean(&self) -> f64 {
+        0.5 * (self.positive + self.negative)
+    }
+
+    /// `(K+ - K-) / ((K+ + K-) / 2)`.
+    fn difference(&self) -> f64 {
+        (self.positive - self.negative) / self.mean()
+    }
+
+    /// Standard deviation of that difference by the noise of the points.
+    fn deviation(&self, points: &[RatePoint], drift: DriftCovariance) -> f64 {
+        spread_of(&self.weights, points, drift).0 / self.mean().abs()
+    }
+
+    fn asymmetry(&self, points: &[RatePoint], drift: DriftCovariance) -> Asymmetry {
+        let size = (
+            self.difference().abs(),
+            self.deviation(&pooled(points), drift),
+        );
+        Asymmetry {
+            value: LargestOf::of(&[size]),
+            positive: self.positive,
+            negative: self.negative,
+        }
+    }
 }
 
 /// Repeatability `Kr` of scale factors of repeated tests: standard deviation over mean, a ratio.

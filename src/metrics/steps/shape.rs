@@ -2,7 +2,7 @@
 
 use super::settling::{Settling, tail_start};
 use crate::metrics::estimate::influence::Spread;
-use crate::metrics::estimate::interval::NORMAL_QUANTILE;
+use crate::metrics::estimate::magnitude::{Peak, ensemble_mean};
 use crate::metrics::estimate::paired::{covariance_at_lags, mean_spread};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -85,18 +85,24 @@ impl Step<'_> {
     /// Largest excess over the final rate as a part of the step.
     ///
     /// An excess that the noise of the record reaches with a probability of 1 % or more is none: the
-    /// value is then 0, and the interval reaches up to that level.
+    /// value is then 0. The interval is that of the mean over records of a value which is 0 in some of
+    /// them: it has the excess that this record may hide in its noise, and what is then seen of it.
     #[must_use]
     pub fn overshoot(&self) -> Estimate {
         let peak = (self.index..self.rate_deg_per_h.len())
             .map(|index| self.response(index) - 1.0)
             .fold(0.0, f64::max);
-        let reached_by_noise = self.settling.noise_reach_deg_per_h / self.height_deg_per_h.abs();
-        if peak <= reached_by_noise {
-            return Estimate::with_interval(0.0, 0.0, reached_by_noise);
+        let after = self.rate_deg_per_h.len() - self.index;
+        let noise = self.noise();
+        let counts_from = self.settling.noise_reach_deg_per_h / self.height_deg_per_h.abs();
+        if noise <= 0.0 {
+            return Estimate::exact(peak);
         }
-        let half_width = NORMAL_QUANTILE * self.noise();
-        Estimate::with_interval(peak, (peak - half_width).max(0.0), peak + half_width)
+        let law = Peak {
+            samples: after,
+            counts_from: counts_from / noise,
+        };
+        ensemble_mean(&law, peak / noise).scaled(noise)
     }
 
     /// Time from 10 % to 90 % of the step, s, linear between samples.

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::scale_factor::{
-    RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFit, StaticZero, distinct_rates,
-    distinct_rates_by_sense, fit_drifting_scale_factor, slope, slope_deviation, too_few_rates,
+    RATES_MIN, RATES_PER_SENSE_MIN, RatePoint, ScaleFactorFigures, ScaleFactorFit, StaticZero,
+    distinct_rates, distinct_rates_by_sense, figures, figures_by_drift, fit_drifting_scale_factor,
+    too_few_rates,
 };
 use super::small_input::measure_small_inputs;
 use crate::metrics::estimate::blocks::equal_block_means;
@@ -285,17 +286,22 @@ pub(crate) fn measure_scale_factor(
     }
 }
 
-/// Scale factor error alone; none where the dwells give no line.
-pub(crate) fn scale_factor_error_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
+/// Scale factor and its errors in numbers alone; none where the dwells give no line.
+pub(crate) fn scale_factor_figures(
+    record: &Record,
+    staircase: &Staircase,
+) -> Option<ScaleFactorFigures> {
     let above = AboveRest::new(staircase, counted_dwells(record, staircase)).ok()?;
-    Some(ratio_to_ppm(slope(&above.points, above.rest).ok()? - 1.0))
+    figures(&above.points, above.rest).ok()
 }
 
-/// Standard deviation of the scale factor error over seeds by slow noise alone.
-pub(crate) fn scale_factor_drift_ppm(record: &Record, staircase: &Staircase) -> Option<f64> {
+/// Standard deviations of these over seeds by slow noise alone.
+pub(crate) fn scale_factor_figures_by_drift(
+    record: &Record,
+    staircase: &Staircase,
+) -> Option<ScaleFactorFigures> {
     let above = AboveRest::new(staircase, counted_dwells(record, staircase)).ok()?;
-    let deviation = slope_deviation(&above.points, above.rest, &above.drift(record));
-    Some(ratio_to_ppm(deviation.ok()?))
+    figures_by_drift(&above.points, above.rest, &above.drift(record)).ok()
 }
 
 /// A dwell of which enough samples have settled.

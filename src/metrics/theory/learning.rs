@@ -209,6 +209,23 @@ impl Learning {
             0 => (whole.parts.clone(), whole.freedom),
             _ => solved.weight_parts(self, from),
         };
+        let drift = self.weights_by_drift(solved, from)?;
+        Some(LearnedWeights {
+            parts: std::iter::once(drift).chain(parts).collect(),
+            warm_up: self.warm_up + 1,
+            freedom,
+        })
+    }
+
+    /// How far the mean sum of the weights over the record moves from seed to seed by slow noise.
+    pub(crate) fn gain_by_drift(&self) -> Option<f64> {
+        let whole = self.of_record()?;
+        Some(self.weights_by_drift(&whole.solved, 0)?.sum())
+    }
+
+    /// What a rate that all words share by slow noise adds to the mean weights from the stretch `from` of
+    /// the record on.
+    fn weights_by_drift(&self, solved: &Solved, from: usize) -> Option<DVector<f64>> {
         let shift = self.drift_deg_per_h;
         let drift = if shift > 0.0 {
             let moved = Solved::of(self, shift)?;
@@ -216,12 +233,7 @@ impl Learning {
         } else {
             DVector::zeros(solved.last.len())
         };
-        let drift = self.unfolded(drift);
-        Some(LearnedWeights {
-            parts: std::iter::once(drift).chain(parts).collect(),
-            warm_up: self.warm_up + 1,
-            freedom,
-        })
+        Some(self.unfolded(drift))
     }
 
     /// What each stretch adds to the gain for a constant rate that is there from the first word on,

@@ -6,7 +6,8 @@
 //! 1.25 times what the scatter of the seeds asks for.
 //!
 //! `FOGBENCH_COVERAGE=<seeds>` runs the long form and prints the table of docs/intervals.md;
-//! `FOGBENCH_COVERAGE_S=<seconds>` sets the length of its records.
+//! `FOGBENCH_COVERAGE_S=<seconds>` sets the length of its records, `FOGBENCH_COVERAGE_MOTION=<name>` runs one
+//! motion alone: rest, swing, steps or staircase.
 
 mod cells;
 mod trial;

@@ -5,11 +5,20 @@
 //! in their power: beyond any record. Blocks of the record then agree to many digits, and records of other
 //! seeds do not. Whether that is so is tried, not assumed: the filter runs again from its initial state on
 //! the same motion with the noise of other parts of the record.
+//!
+//! The runs are over a part of the record, and what they differ by fades a little more over all of it. Along
+//! an eigenvector of the mean of `x x' / x'x` with the eigenvalue l a normalised gradient of step m keeps
+//! `exp(-m l t)` after t samples: of the mean over the first P samples that over N has
+//!
+//! ```text
+//! f(m l N) / f(m l P),    f(z) = (1 - exp(-z)) / z
+//! ```
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 use crate::experiment::channel_filter::{ChannelFilter, FinishedFilter};
-use crate::experiment::run::RecordLength;
+use crate::experiment::run::{RecordLength, count};
+use crate::filters::FilterKind;
 
 /// Runs on the noise of other parts of the record.
 const RUNS: usize = 6;
@@ -41,16 +50,19 @@ pub(in crate::experiment::run) fn runs_that_differ(
     sample_period_s: f64,
 ) -> Option<Vec<Vec<f64>>> {
     let kind = filter.kind.as_ref()?;
-    let blocks = &filter.words.as_ref().ok()?.block_weights;
+    let finished = filter.words.as_ref().ok()?;
+    let blocks = &finished.block_weights;
     let part = RecordLength {
         measured: length.measured / PARTS,
         ..length
     };
     let measured = &words[length.warm_up..];
-    let may_differ = !filter.restarts
-        && blocks.len() == PARTS
-        && forgets_slower_than(measured, filter.shape.taps?, part.measured);
-    if !may_differ {
+    if filter.restarts || blocks.len() != PARTS {
+        return None;
+    }
+    let shares = power_shares(measured, filter.shape.taps?)?;
+    // At any stable step.
+    if shares.eigenvalues.min() * STEP_MAX * count(part.measured) > 1.0 {
         return None;
     }
     let others = (1..=RUNS).filter_map(|run| {
@@ -69,7 +81,52 @@ pub(in crate::experiment::run) fn runs_that_differ(
     let runs: Vec<Vec<f64>> = std::iter::once(own.clone()).chain(others).collect();
     let power: f64 = own.iter().map(|weight| weight * weight).sum();
     let of_blocks = RATIO_MAX * scatter(blocks) + FLOOR.powi(2) * power;
-    (runs.len() > 2 && scatter(&runs) > of_blocks).then_some(runs)
+    let differ = runs.len() > 2 && scatter(&runs) > of_blocks;
+    let step = normalised_step(kind);
+    let faded = |runs: Vec<Vec<f64>>| match (&finished.mean_weights, step) {
+        (Some(mean), Some(step)) => {
+            let spans = [part.measured, length.measured].map(|samples| step * count(samples));
+            over_record(&runs, mean, &shares, spans)
+        }
+        _ => runs,
+    };
+    differ.then(|| faded(runs))
+}
+
+/// Step of a normalised gradient; none of another rule, whose step has a unit or is a sign.
+fn normalised_step(kind: &FilterKind) -> Option<f64> {
+    match kind {
+        FilterKind::Lms(settings) if settings.normalised => Some(settings.step_size),
+        _ => None,
+    }
+}
+
+/// Weights of runs over the first part of the record, as their differences are in the mean over all of it.
+///
+/// * `mean`: the weights of the filter over the record, about which they then lie.
+/// * `spans`: samples of the part and of the record, times the step.
+fn over_record(
+    runs: &[Vec<f64>],
+    mean: &[f64],
+    shares: &SymmetricEigen<f64, Dyn>,
+    spans: [f64; 2],
+) -> Vec<Vec<f64>> {
+    let kept = |share: f64| {
+        let [of_part, of_record] = spans.map(|span| {
+            let faded = (share * span).max(f64::EPSILON);
+            -(-faded).exp_m1() / faded
+        });
+        of_record / of_part
+    };
+    let factors = shares.eigenvalues.map(kept);
+    let vectors = &shares.eigenvectors;
+    let of_runs = runs.iter().map(|own| DVector::from_column_slice(own));
+    let centre = of_runs.clone().sum::<DVector<f64>>() / count(runs.len());
+    let moved = of_runs.map(|own| {
+        let along = (vectors.transpose() * (own - &centre)).component_mul(&factors);
+        DVector::from_column_slice(mean) + vectors * along
+    });
+    moved.map(|own| own.as_slice().to_vec()).collect()
 }
 
 /// Sum over the taps of the variance of the weights.
@@ -84,28 +141,53 @@ fn scatter(weights: &[Vec<f64>]) -> f64 {
     (0..taps).map(of_tap).sum()
 }
 
-/// Whether weights across the greatest regressors forget slower than so many samples at any stable step.
+/// The mean of `x x' / x'x` over the regressors x, newest first, by its eigenvectors.
 ///
-/// The least eigenvalue of the mean of `x x' / x'x` is what a normalised step of 1 forgets in a sample.
-fn forgets_slower_than(words: &[f64], taps: usize, samples: usize) -> bool {
+/// Its eigenvalues are what a normalised step of 1 forgets in a sample.
+fn power_shares(words: &[f64], taps: usize) -> Option<SymmetricEigen<f64, Dyn>> {
     if words.len() < taps {
-        return false;
+        return None;
     }
     let stride = (words.len() / REGRESSORS_MAX).max(1);
     let mut shares = DMatrix::<f64>::zeros(taps, taps);
-    let mut count = 0.0;
+    let mut number = 0.0;
     for window in words.windows(taps).step_by(stride) {
         let energy: f64 = window.iter().map(|word| word * word).sum();
         if energy > 0.0 {
-            let window = DVector::from_column_slice(window);
-            shares.syger(1.0 / energy, &window, &window, 1.0);
-            count += 1.0;
+            let newest_first = DVector::from_iterator(taps, window.iter().rev().copied());
+            shares.syger(1.0 / energy, &newest_first, &newest_first, 1.0);
+            number += 1.0;
         }
     }
-    if count == 0.0 {
-        return false;
+    if number == 0.0 {
+        return None;
     }
     shares.fill_upper_triangle_with_lower_triangle();
-    let least = (shares / count).symmetric_eigenvalues().min();
-    least * STEP_MAX * samples as f64 <= 1.0
+    Some((shares / number).symmetric_eigen())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_along_what_is_seen_fade_and_those_across_it_stay() {
+        // Regressors along (1, 1) alone, but for a millionth across.
+        let words: Vec<f64> = (0..20_000_i32)
+            .map(|at| 100.0 + 0.1 * f64::from(at % 2))
+            .collect();
+        let shares = power_shares(&words, 2).unwrap();
+        let runs = [
+            vec![1.0, 1.0],
+            vec![-1.0, -1.0],
+            vec![1.0, -1.0],
+            vec![-1.0, 1.0],
+        ];
+        let moved = over_record(&runs, &[0.5, 0.5], &shares, [10.0, 100.0]);
+        // A tenth of the part's mean is left over ten times as long, of what has faded by then.
+        let seen = moved[0][0] - 0.5;
+        assert!((seen - 0.1).abs() < 1e-3, "{seen}");
+        let unseen = moved[2][0] - 0.5;
+        assert!((unseen - 1.0).abs() < 1e-3, "{unseen}");
+    }
 }
