@@ -7,7 +7,7 @@ use std::process::Command;
 
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 
-use crate::rtl_units::{unit_lines, write_unit_bench};
+use super::super::rtl_units::{unit_lines, write_unit_bench};
 use crate::support::{code, fogbench, stderr, write};
 
 /// Filters of the exports.
