@@ -22,7 +22,7 @@ pub fn input_digest(words: &[f64]) -> String {
 /// What the gyro refuses.
 pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroError> {
     let scenario = &plan.resolved().scenario;
-    let mut words = first_words(scenario, samples)?;
+    let words = first_words(scenario, samples)?;
     let output = &scenario.gyro.output;
     let lsb = match output.quantisation {
         OutputQuantisation::RateWord => output.rate_lsb_deg_per_s,
@@ -33,9 +33,6 @@ pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroEr
     };
     // The mean of rounded words is a multiple of the step over their number.
     let lsb = lsb / f64::from(output.average_samples);
-    if lsb > 0.0 {
-        without_sign_of_zero(&mut words);
-    }
     let codes = (lsb > 0.0).then(|| IntegerCodes {
         codes: words.iter().map(|word| code(*word, lsb)).collect(),
         scale: CodeScale {
@@ -48,13 +45,6 @@ pub fn scenario_stimulus(plan: &Plan, samples: usize) -> Result<Stimulus, GyroEr
     Ok(Stimulus { words, codes })
 }
 
-/// Takes the sign from words of 0, which an integer code has not either.
-fn without_sign_of_zero(words: &mut [f64]) {
-    for word in words {
-        *word += 0.0;
-    }
-}
-
 /// The integer that a rate word is a multiple of the least significant bit by.
 #[expect(
     clippy::cast_possible_truncation,
@@ -62,28 +52,4 @@ fn without_sign_of_zero(words: &mut [f64]) {
 )]
 fn code(word_deg_per_h: f64, lsb_deg_per_s: f64) -> i32 {
     (deg_per_h_to_deg_per_s(word_deg_per_h) / lsb_deg_per_s).round() as i32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_small_rate_below_zero_has_the_word_of_its_code() {
-        let lsb = 0.01;
-        let mut words = [-0.4, -0.6, 0.3, -1.2].map(|codes: f64| codes.round() * lsb * 3600.0);
-        assert!(words[0].is_sign_negative());
-        without_sign_of_zero(&mut words);
-        let codes = IntegerCodes {
-            codes: words.iter().map(|word| code(*word, lsb)).collect(),
-            scale: CodeScale {
-                lsb,
-                unit: "deg/s".to_owned(),
-                factor: 3600.0,
-                word_unit: "deg/h".to_owned(),
-            },
-        };
-        assert_eq!(codes.codes, [0, -1, 0, -1]);
-        assert!(codes.give(&words));
-    }
 }

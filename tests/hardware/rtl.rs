@@ -569,6 +569,13 @@ fn the_top_level_has_the_exported_constants_and_the_words_of_the_model() {
         };
         let words: Vec<f64> = codes.codes.iter().map(|k| codes.scale.word(*k)).collect();
         assert!(codes.give(&words));
+        // A small rate below zero is rounded to -0, which no code is.
+        let signed: Vec<f64> = words
+            .iter()
+            .map(|it| if *it == 0.0 { -0.0 } else { *it })
+            .collect();
+        assert!(codes.give(&signed));
+        assert!(!codes.give(&signed.iter().map(|it| it + 1e-9).collect::<Vec<_>>()));
         let pairs = stimulus_pairs(&words, &mut FrontEnd::<F>::new(desired, 2)).unwrap();
         let mut settings = settings(rls(3, 0.97, Division::Elementwise), 0);
         let scale = coded.then(code_scale);

@@ -83,16 +83,19 @@ fn export<F: Fp>(
     folder: &Path,
     form: ExportForm,
     settings: &FloatSettings,
-    stimulus: Stimulus,
+    mut stimulus: Stimulus,
     trace_samples: usize,
     parts: HardwareParts,
 ) -> Result<Vec<PathBuf>, FpgaError> {
-    let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
-    let pipeline = settings.core.config_with::<F>(parts.latencies)?;
-    // Codes whose words are not theirs bit for bit, as those of means: the board takes words.
+    // Codes whose words are not theirs, as those of means: the board takes words.
     let codes = stimulus.codes.as_ref();
     let codes = codes.filter(|codes| codes.give(&stimulus.words));
     let scale = codes.map(|codes| codes.scale.clone());
+    if let Some(codes) = codes {
+        stimulus.words = codes.words().collect();
+    }
+    let pairs = stimulus_pairs(&stimulus.words, &mut settings.front_end::<F>())?;
+    let pipeline = settings.core.config_with::<F>(parts.latencies)?;
     let top = TopLevel {
         surroundings: settings.surroundings(&pipeline, scale),
         samples: stimulus.words.iter().copied().map(F::from_f64).collect(),

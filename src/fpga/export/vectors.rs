@@ -23,14 +23,17 @@ pub struct IntegerCodes {
 }
 
 impl IntegerCodes {
-    /// Whether the words are those of the codes, bit for bit.
+    /// Whether the words are those of the codes, bit for bit but for the sign of 0, which a code has not.
     #[must_use]
     pub fn give(&self, words: &[f64]) -> bool {
-        let of_codes = self.codes.iter().map(|code| self.scale.word(*code));
-        self.codes.len() == words.len()
-            && of_codes
-                .zip(words)
-                .all(|(mine, word)| mine.to_bits() == word.to_bits())
+        let bits = |word: f64| (word + 0.0).to_bits();
+        let mut pairs = self.words().zip(words);
+        self.codes.len() == words.len() && pairs.all(|(mine, word)| bits(mine) == bits(*word))
+    }
+
+    /// The words of the codes.
+    pub fn words(&self) -> impl Iterator<Item = f64> {
+        self.codes.iter().map(|code| self.scale.word(*code))
     }
 }
 
