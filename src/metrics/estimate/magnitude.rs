@@ -54,32 +54,14 @@ pub(crate) fn ensemble_mean(law: &impl MagnitudeLaw, x: f64) -> Estimate {
 
 /// The same where rounding makes the figure another value.
 fn about(law: &impl MagnitudeLaw, x: f64, value: f64) -> Estimate {
-    let largest = x + REACH;
-    let [mut low, mut high] = law.range(0.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if law.below(0.0, middle) < 1.0 - OUTSIDE {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let told_from_noise = high;
+    let [_, told_from_noise] = boundary(law.range(0.0), |x| law.below(0.0, x) < 1.0 - OUTSIDE);
     let share_below = |signal: f64| 0.5 * OUTSIDE * (1.0 - law.below(signal, told_from_noise));
     // The first signal of which the condition no longer holds.
     let end = |holds: &dyn Fn(f64) -> bool| {
-        let [mut low, mut high] = [0.0, largest];
-        if !holds(low) {
+        if !holds(0.0) {
             return 0.0;
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if holds(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
+        let [low, high] = boundary([0.0, x + REACH], holds);
         0.5 * (low + high)
     };
     let least = end(&|signal| 1.0 - law.below(signal, x) < OUTSIDE - share_below(signal));
@@ -97,6 +79,19 @@ fn about(law: &impl MagnitudeLaw, x: f64, value: f64) -> Estimate {
         of_least.min(value),
         mean_figure(law, most).max(value),
     )
+}
+
+/// Neighbours between which a condition ends that holds at the lower end of a range.
+fn boundary([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> [f64; 2] {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    [low, high]
 }
 
 /// Mean of the figure over records with this signal.

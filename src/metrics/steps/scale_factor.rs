@@ -121,6 +121,11 @@ fn moved(inputs: &[f64]) -> impl Iterator<Item = usize> {
         .flat_map(|sense| of_sense(inputs, sense))
 }
 
+/// Largest output of either sense.
+fn full_scale(outputs: &[f64]) -> f64 {
+    outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()))
+}
+
 /// Least-squares line through points with its mean subtracted first, so that no digits are lost.
 struct Line {
     mean_input: f64,
@@ -210,7 +215,7 @@ pub(crate) fn fit_drifting_scale_factor(
 ) -> Result<ScaleFactorFit, Unavailable> {
     let (inputs, outputs, line) = line_above_rest(points, rest)?;
     let residuals = residuals(points, (&inputs, &outputs), &line, drift);
-    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
+    let full_scale = full_scale(&outputs);
     let weights: Vec<(usize, f64)> = inputs
         .iter()
         .map(|input| line.slope_weight(*input))
@@ -256,7 +261,7 @@ pub(crate) fn figures(
     rest: StaticZero,
 ) -> Result<ScaleFactorFigures, Unavailable> {
     let (inputs, outputs, line) = line_above_rest(points, rest)?;
-    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
+    let full_scale = full_scale(&outputs);
     let distance = |at: usize| (outputs[at] - line.at(inputs[at])).abs();
     let largest = (0..inputs.len()).map(distance).fold(0.0, f64::max);
     let of_reading = moved(&inputs).map(|at| distance(at) / line.at(inputs[at]).abs());
@@ -281,7 +286,7 @@ pub(crate) fn figures_by_drift(
         ..*point
     };
     let quiet: Vec<RatePoint> = points.iter().map(quiet).collect();
-    let full_scale = outputs.iter().fold(0.0_f64, |max, at| max.max(at.abs()));
+    let full_scale = full_scale(&outputs);
     let weights = inputs.iter().map(|input| line.slope_weight(*input));
     let weights: Vec<(usize, f64)> = weights.enumerate().collect();
     let residuals = residuals(&quiet, (&inputs, &outputs), &line, drift);
