@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, code, fogbench, stderr, stdout, write};
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout, write};
 
 /// Gaps of a record of 2000 words, of one word to seven.
 const GAPS: [(usize, usize); 6] = [
@@ -109,10 +109,6 @@ fn differences_that_span_gaps_are_those_of_which_all_angles_exist() {
             }
         }
     }
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
 }
 
 /// What `analyze` says of a file.

@@ -3,11 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, code, fogbench, repository, stderr, stdout, write};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{assert_close, code, fogbench, repository, scratch, stderr, stdout, write};
 
 /// Arguments of `budget` on a file of the repository.
 fn arguments(file: &str, more: &[&str]) -> Vec<String> {

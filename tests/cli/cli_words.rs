@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::process::Command;
 
 use crate::support::transcript::said_to_each;
-use crate::support::{code, fogbench, stderr, stdout, write};
+use crate::support::{code, fogbench, scratch, stderr, stdout, write};
 
 /// A scenario of a second of the rate model.
 const SHORT: &str = "schema = 1
@@ -12,10 +12,6 @@ name = \"short\"
 duration_s = 1.0
 fidelity = \"rate\"
 ";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 #[test]
 fn options_out_of_range_or_missing_are_told_with_their_ranges() {

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use crate::support::transcript::{Transcript, said_to_each};
-use crate::support::{code, field, fogbench, repository, stderr, stdout, summary, tree, write};
+use crate::support::{
+    code, field, fogbench, repository, scratch, stderr, stdout, summary, tree, write,
+};
 
 /// The transcript of commands.
 const COMMANDS: &str = "commands";
@@ -15,10 +17,6 @@ duration_s = 2.0
 warm_up_s = 1.0
 fidelity = \"rate\"
 ";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 #[test]
 fn lists_and_checks_print_what_the_transcript_holds() {

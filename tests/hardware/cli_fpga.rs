@@ -4,11 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{code, fogbench, repository, scratch, stderr, stdout, summary, write};
 
 #[test]
 fn published_timing_at_four_taps_and_forty_megahertz_is_printed() {

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, code, fogbench, stderr, stdout, summary, tree, write};
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout, summary, tree, write};
 
 /// The transcript of commands on recorded logs.
 const ON_LOGS: &str = "log-commands";
@@ -44,10 +44,6 @@ const SWING: &str = "
 rate_amplitude_deg_per_s = 1.0
 frequency_hz = 5.0
 ";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 /// Runs the scenario and gives its summary.
 fn run(folder: &Path, text: &str) -> Value {

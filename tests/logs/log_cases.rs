@@ -7,11 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::support::records::{normals, white};
-use crate::support::{assert_close, code, fogbench, stderr, stdout, write};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout, write};
 
 /// What `analyze` finds in a file of `folder`.
 #[track_caller]

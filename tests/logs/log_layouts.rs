@@ -9,17 +9,13 @@ use serde_json::Value;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, code, fogbench, stderr, stdout, write};
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout, write};
 
 /// The transcript of what is said of layouts.
 const LAYOUTS: &str = "layouts";
 
 /// deg/s of a word of 10 ms with an angle random walk of 1.2 deg/sqrt(h).
 const WORD_STD: f64 = 0.2;
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 #[track_caller]
 fn read(text: impl AsRef<[u8]>, format: &LogFormat) -> Result<Log, String> {

@@ -6,14 +6,10 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::support::records::white;
-use crate::support::{assert_close, code, fogbench, stderr, stdout, write};
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout, write};
 
 /// Rows of the record, 10 Hz.
 const ROWS: usize = 300;
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 fn words() -> Vec<f64> {
     white(11, ROWS, 1.0).iter().map(|word| word + 8.0).collect()

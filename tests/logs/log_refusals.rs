@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, stderr, write};
+use crate::support::{code, fogbench, scratch, stderr, write};
 
 /// Words and stamps between some signs, with a decimal point or comma.
 fn table(separator: &str, decimal: &str, stamp: impl Fn(f64) -> String) -> String {
@@ -30,10 +30,6 @@ fn analysed(folder: &Path, arguments: &str) -> (i32, String) {
         code(&output),
         said.lines().last().unwrap_or_default().to_owned(),
     )
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
 }
 
 /// Tables of the same numbers, each with how it is cut.

@@ -10,11 +10,7 @@ use serde_json::Value;
 
 use crate::support::records::white;
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, piped, stderr, stdout};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{code, fogbench, piped, scratch, stderr, stdout};
 
 /// Counts of a gyro at rest.
 fn counts(count: usize) -> Vec<i16> {

@@ -10,14 +10,10 @@ use fogbench::scenario::{MotionConfig, load_suite};
 use proptest::prelude::*;
 
 use crate::support::transcript::{Transcript, said_to_each};
-use crate::support::{code, fogbench, npy, piped, stderr, stdout, write};
+use crate::support::{code, fogbench, npy, piped, scratch, stderr, stdout, write};
 
 /// The transcript of what the readers refuse.
 const READERS: &str = "readers";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 /// deg/h at 100 Hz.
 fn format(column: Option<&str>) -> LogFormat {

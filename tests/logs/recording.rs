@@ -6,14 +6,10 @@ use fogbench::recording::{Log, LogError, LogFormat, RateUnit, TimeUnit, csv_text
 use fogbench::store::write_npy;
 
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, write};
+use crate::support::{assert_close, scratch, write};
 
 /// The transcript of complaints about logs.
 const LOGS: &str = "logs";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 /// deg/h at 400 Hz, the only column.
 fn format() -> LogFormat {

@@ -3,15 +3,11 @@
 use std::path::Path;
 use std::process::Output;
 
-use crate::support::{code, fogbench, stderr, stdout, write};
+use crate::support::{code, fogbench, scratch, stderr, stdout, write};
 
 const SHORT: &str = "schema = 1\nduration_s = 0.4\nwarm_up_s = 0.1\nfidelity = \"rate\"\n";
 const HOLDS: &str = "[[gate]]\nmetric = \"raw.noise_std_deg_per_h\"\nmin = 0.0\n";
 const FAILS: &str = "[[gate]]\nmetric = \"raw.noise_std_deg_per_h\"\nmax = 1e-3\n";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 fn scenario(folder: &Path, name: &str, more: &str) {
     let text = format!("name = \"{name}\"\n{SHORT}{more}");

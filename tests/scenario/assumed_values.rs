@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::support::{code, fogbench, repository, stderr, stdout, summary, write};
+use crate::support::{code, fogbench, repository, scratch, stderr, stdout, summary, write};
 
 /// A scenario that sets next to nothing.
 const BARE: &str = "schema = 1
@@ -10,10 +10,6 @@ name = \"bare\"
 duration_s = 20.0
 fidelity = \"rate\"
 ";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 /// What a command says that ends well, line breaks left aside.
 fn said(folder: &Path, line: &str) -> String {

@@ -8,7 +8,7 @@ use std::process::Command;
 use fogbench::scenario::{Resolved, load_suite, manifest_toml};
 
 use crate::support::transcript::Transcript;
-use crate::support::{code, fogbench, stderr, stdout, write};
+use crate::support::{code, fogbench, scratch, stderr, stdout, write};
 
 /// The transcript of bounds.
 const BOUNDS: &str = "bounds";
@@ -18,10 +18,6 @@ const SOUND: &str = "schema = 1\nname = \"x\"\nduration_s = 20.0\n";
 
 /// Most bytes of a text.
 const BYTES_MAX: usize = 16_000_000;
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 /// What `check` says about `x.toml`, whose text this is; it must refuse it.
 #[track_caller]

@@ -3,11 +3,7 @@
 use std::path::Path;
 
 use crate::support::transcript::said_to_each;
-use crate::support::{code, fogbench, stderr, stdout, summary};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{code, fogbench, scratch, stderr, stdout, summary};
 
 fn words(line: &str) -> Vec<&str> {
     line.split(' ').collect()

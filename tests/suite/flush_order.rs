@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::support::write;
+use crate::support::{scratch, write};
 
 const SHORT: &str = "schema = 1\nduration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n";
 
@@ -199,10 +199,6 @@ fn is_flushed(folder: &Path, output: &str, arguments: &[&str], expected: &[&str]
             .collect();
         assert!(left.is_empty(), "never flushed: {left:?}");
     }
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
 }
 
 #[test]

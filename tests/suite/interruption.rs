@@ -11,14 +11,10 @@ use fogbench::experiment::{
 use fogbench::report::{RunOutcome, RunReport, RunStatus};
 use serde_json::Value;
 
-use crate::support::write;
+use crate::support::{scratch, write};
 
 /// A second of the rate model.
 const SHORT: &str = "duration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 fn scenario(folder: &Path, name: &str, text: &str) -> PathBuf {
     let text = format!("schema = 1\nname = \"{name}\"\n{text}");

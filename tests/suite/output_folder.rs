@@ -9,13 +9,9 @@ use fogbench::experiment::{Observer, Progress, SuiteOptions, SuiteOutcome, plan_
 use fogbench::report::RunReport;
 use fogbench::store::{OutputFolder, StoreOptions, SuiteFileNames};
 
-use crate::support::{code, fogbench, repository, stderr, summary, tree, write};
+use crate::support::{code, fogbench, repository, scratch, stderr, summary, tree, write};
 
 const SHORT: &str = "schema = 1\nduration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n";
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
 
 fn plain(folder: &Path, name: &str) {
     write(

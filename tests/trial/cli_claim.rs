@@ -5,11 +5,7 @@ use fogbench::signal::WeightRule;
 
 use crate::support::records::{facts, raw_record, settings, white};
 use crate::support::transcript::Transcript;
-use crate::support::{assert_close, code, fogbench, stderr, stdout};
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a scratch folder")
-}
+use crate::support::{assert_close, code, fogbench, scratch, stderr, stdout};
 
 #[test]
 fn what_reads_the_same_is_said() {
