@@ -65,12 +65,13 @@ enum PointsError {
 /// [`LogError`]: whatever the file system says, unknown columns, cells that are no number, rates without a unit
 /// or in one of angles, negative standard errors.
 pub fn read_points(path: &Path, format: &PointsFormat) -> Result<RecordedPoints, LogError> {
-    let both = [(&format.rate, "rate"), (&format.output, "output")];
-    let error = format.error.as_ref().map(|name| (name, "error"));
-    let asked = both.into_iter().chain(error).map(|(name, key)| {
-        let key = Some(key);
-        Asked { name, key }
-    });
+    let both = [
+        Asked::by(&format.rate, "rate"),
+        Asked::by(&format.output, "output"),
+    ];
+    let error = format.error.as_deref();
+    let error = error.map(|name| Asked::by(name, "error"));
+    let asked = both.into_iter().chain(error);
     let layout = LogFormat::default();
     let columns = table::read(
         path,

@@ -8,4 +8,4 @@ mod text;
 
 pub(crate) use likeness::{Likeness, Name, Vocabulary, is_misspelling, likeness};
 pub(crate) use quantity::{conversion, words_of};
-pub(crate) use text::{counted, decimals, exact, number, plain, printable, to_digits};
+pub(crate) use text::{counted, decimals, exact, number, option_of, plain, printable, to_digits};

@@ -5,6 +5,11 @@ use std::fmt::Display;
 /// Most significant digits of a number that is printed as it is.
 const DIGITS_MAX: usize = 9;
 
+/// The option of the command line that says what a key does: `--time-unit` for `time_unit`.
+pub(crate) fn option_of(key: &str) -> String {
+    format!("--{}", key.replace('_', "-"))
+}
+
 /// A number and its noun, in the plural unless there is one.
 pub(crate) fn counted<N: Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
     let plural = if count == N::from(1) { "" } else { "s" };

@@ -15,6 +15,7 @@ use crate::cli::options::hardware::{ExportOptions, FilterOptions, Kind, TimingOp
 use crate::cli::options::log::LogOptions;
 use crate::recording::LogMotion;
 use crate::vocabulary::{ExportForm, UnitSource, WordFormat};
+use crate::wording::option_of;
 
 /// Reads the command line.
 ///
@@ -79,8 +80,7 @@ fn complaints(command: &Command, given: &ArgMatches) -> Vec<String> {
 fn typed<'a>(given: &ArgMatches, ids: &[&'a str]) -> Vec<String> {
     let is_given = |id: &&&'a str| given.value_source(id) == Some(ValueSource::CommandLine);
     let ids = ids.iter().filter(is_given);
-    ids.map(|id| format!("--{}", id.replace('_', "-")))
-        .collect()
+    ids.map(|id| option_of(id)).collect()
 }
 
 /// An assembly has no reference; a swing no Allan curve, no noise fit and no means at rest.

@@ -90,11 +90,8 @@ fn stands_alone(separator: Separator, lines: &[&str]) -> bool {
     let Delimiter::Character(character) = Delimiter::from(separator) else {
         return false;
     };
-    let mut text = [0; 4];
-    let text = &*character.encode_utf8(&mut text);
-    let with = lines
-        .iter()
-        .filter(|line| line.split(' ').any(|word| word == text));
+    let is_alone = |word: &str| word.strip_prefix(character) == Some("");
+    let with = lines.iter().filter(|line| line.split(' ').any(is_alone));
     2 * with.count() > lines.len()
 }
 

@@ -7,6 +7,7 @@ use crate::recording::log::format::LogFormat;
 use crate::recording::text::lines::{listed, shown};
 use crate::recording::time::unit::TimeUnit;
 use crate::recording::unit::spelling::Spelled;
+use crate::wording::option_of;
 
 /// Word that says that a file has no column of the time.
 pub(super) const NO_TIME: &str = "none";
@@ -123,10 +124,7 @@ impl Chooser<'_> {
 
     /// The columns that a name, a part of one, a number or a pattern with `*` names.
     fn matching(&self, pattern: &str) -> Result<Vec<usize>, LayoutError> {
-        let asked = Asked {
-            name: pattern,
-            key: Some(COLUMN),
-        };
+        let asked = Asked::by(pattern, COLUMN);
         if !pattern.contains('*') || self.layout.names.iter().any(|name| name == pattern) {
             return Ok(vec![self.one(asked)?]);
         }
@@ -226,7 +224,7 @@ impl Chooser<'_> {
         if others.is_empty() {
             let time = (!chosen.time.is_empty()).then(|| "the time".to_owned());
             let keys = beside.iter().filter_map(|(_, key)| *key);
-            let beside = keys.map(|key| format!("that of --{}", key.replace('_', "-")));
+            let beside = keys.map(|key| format!("that of {}", option_of(key)));
             let taken: Vec<String> = time.into_iter().chain(beside).collect();
             return Err(LayoutError::NoOther(taken.join(" and ")));
         }

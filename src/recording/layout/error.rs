@@ -1,11 +1,12 @@
 //! What is wrong with a table, or doubtful.
 
 use std::fmt;
+use std::path::Path;
 
 use super::words::{DecimalSign, Separator};
-
+use crate::recording::error::{LogError, Place};
 use crate::recording::text::lines::{FirstLineError, shown};
-use crate::wording::counted;
+use crate::wording::{counted, option_of};
 
 /// A complaint about a line.
 #[derive(Debug)]
@@ -13,6 +14,24 @@ pub(in crate::recording) struct Fault {
     /// The line, from 1; none if the file as a whole is meant.
     pub(in crate::recording) line: Option<usize>,
     pub(in crate::recording) error: LayoutError,
+}
+
+impl Fault {
+    /// The complaint about a file.
+    pub(in crate::recording) fn of(self, path: &Path) -> LogError {
+        let key = self.error.key();
+        let complaint = match self.line {
+            Some(line) => LogError::at(path, Place::Line(line), self.error),
+            None => LogError::of_file(path, self.error),
+        };
+        complaint.about(key)
+    }
+}
+
+impl From<LayoutError> for Fault {
+    fn from(error: LayoutError) -> Self {
+        Self { line: None, error }
+    }
 }
 
 /// A column that is asked for.
@@ -31,6 +50,14 @@ pub(in crate::recording) struct AskedName {
     key: Option<&'static str>,
 }
 
+impl<'a> Asked<'a> {
+    /// One that a key of `[log]`, or an option, names.
+    pub(in crate::recording) fn by(name: &'a str, key: &'static str) -> Self {
+        let key = Some(key);
+        Self { name, key }
+    }
+}
+
 impl From<Asked<'_>> for AskedName {
     fn from(asked: Asked<'_>) -> Self {
         Self {
@@ -44,7 +71,7 @@ impl fmt::Display for AskedName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}`", self.name)?;
         match self.key {
-            Some(key) => write!(f, ", which --{} names", key.replace('_', "-")),
+            Some(key) => write!(f, ", which {} names", option_of(key)),
             None => Ok(()),
         }
     }
@@ -82,11 +109,8 @@ pub(in crate::recording) type Keys = [Option<&'static str>; 2];
 /// The keys that name one column, as a message says them.
 fn by_keys(keys: Keys) -> String {
     match keys {
-        [Some(a), Some(b)] if a == b => format!(", twice by --{}", a.replace('_', "-")),
-        [Some(a), Some(b)] => {
-            let [a, b] = [a, b].map(|key| key.replace('_', "-"));
-            format!(", by --{a} and by --{b}")
-        }
+        [Some(a), Some(b)] if a == b => format!(", twice by {}", option_of(a)),
+        [Some(a), Some(b)] => format!(", by {} and by {}", option_of(a), option_of(b)),
         _ => String::new(),
     }
 }
@@ -157,7 +181,7 @@ pub(in crate::recording) enum LayoutError {
         "`{0}` has a decimal comma, or one between thousands: say --decimal comma, or write it without"
     )]
     Thousands(String),
-    #[error("the file ends before line {line}, which --{} names", .key.replace('_', "-"))]
+    #[error("the file ends before line {line}, which {} names", option_of(.key))]
     NoLine { line: usize, key: &'static str },
     #[error("{got} in line {line}, which an option names, where the rows have {expected} cells")]
     Heading {
@@ -165,7 +189,7 @@ pub(in crate::recording) enum LayoutError {
         got: String,
         expected: usize,
     },
-    #[error("no row stands below line {line}, which --{} names", .key.replace('_', "-"))]
+    #[error("no row stands below line {line}, which {} names", option_of(.key))]
     NoRowBelow { line: usize, key: &'static str },
     #[error(
         "the file ends within a record: {got} of {expected} values, which --wrapped-columns names"

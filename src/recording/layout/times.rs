@@ -29,51 +29,12 @@ pub(super) const TIMES: [&str; 16] = [
 ];
 /// Whole headings of such a column.
 pub(super) const SHORT_TIMES: [&str; 5] = ["t", "ts", "secs", "sec", "x_value"];
-/// Words in the heading of the part of a second that stands beside whole ones, with its unit and how many of
-/// it a second has.
-const PARTS: [(&[&str], TimeUnit, u64); 3] = [
-    (
-        &[
-            "ms",
-            "msec",
-            "msecs",
-            "millis",
-            "millisec",
-            "millisecond",
-            "milliseconds",
-        ],
-        TimeUnit::Milliseconds,
-        1_000,
-    ),
-    (
-        &[
-            "us",
-            "usec",
-            "usecs",
-            "micros",
-            "microsec",
-            "microsecond",
-            "microseconds",
-        ],
-        TimeUnit::Microseconds,
-        1_000_000,
-    ),
-    (
-        &[
-            "ns",
-            "nsec",
-            "nsecs",
-            "nanos",
-            "nanosec",
-            "nanosecond",
-            "nanoseconds",
-        ],
-        TimeUnit::Nanoseconds,
-        1_000_000_000,
-    ),
+/// Units of the part of a second that stands beside whole ones.
+const PARTS: [TimeUnit; 3] = [
+    TimeUnit::Milliseconds,
+    TimeUnit::Microseconds,
+    TimeUnit::Nanoseconds,
 ];
-/// Words in the heading of whole seconds.
-const SECONDS: [&str; 5] = ["s", "sec", "secs", "second", "seconds"];
 /// Words in the heading of a counter of samples.
 pub(super) const COUNTERS: [&str; 15] = [
     "counter",
@@ -102,10 +63,7 @@ impl Chooser<'_> {
             Some([none]) if none == NO_TIME => return Ok(()),
             Some(names) => names
                 .iter()
-                .map(|name| {
-                    let key = Some(TIME);
-                    self.one(Asked { name, key })
-                })
+                .map(|name| self.one(Asked::by(name, TIME)))
                 .collect::<Result<_, _>>()?,
             None => {
                 chosen.is_time_found = true;
@@ -273,14 +231,9 @@ impl Chooser<'_> {
         }
         let (wholes, parts) = (self.words(whole), self.words(part));
         let is_time = |word: &String| {
-            let word = word.as_str();
-            TIMES.contains(&word) || SECONDS.contains(&word)
+            TIMES.contains(&word.as_str()) || TimeUnit::spelled(word) == Some(TimeUnit::Seconds)
         };
-        let is_part = |word: &String| {
-            PARTS
-                .iter()
-                .any(|(names, ..)| names.contains(&word.as_str()))
-        };
+        let is_part = |word: &String| TimeUnit::spelled(word).is_some_and(|it| PARTS.contains(&it));
         let mut others = parts.iter().filter(|word| !is_part(word));
         (wholes.iter().any(is_time) || self.holds_dates(whole))
             && others.all(|word| wholes.contains(word) || is_time(word))
@@ -300,31 +253,52 @@ impl Chooser<'_> {
     /// Unit of a column that holds parts of a second, by its heading, without one by the number of its digits.
     fn part_of_second(&self, index: usize) -> Option<TimeUnit> {
         let words = self.words(index);
-        let is_named = |names: &[&str]| words.iter().any(|word| names.contains(&word.as_str()));
+        let is_named = |unit| {
+            words
+                .iter()
+                .any(|word| TimeUnit::spelled(word) == Some(unit))
+        };
+        let per_second = |unit: TimeUnit| {
+            let nanoseconds = [TimeUnit::Seconds, unit].map(TimeUnit::nanoseconds);
+            let [second, part] = nanoseconds.map(Option::unwrap_or_default);
+            second.checked_div(part).unwrap_or_default()
+        };
         let digits = self.cells(index).next().unwrap_or_default().len();
-        let is_like = |most: u64| {
+        let is_like = |unit| {
             self.layout.names.is_empty()
-                && most.to_string().len() == digits + 1
+                && per_second(unit).to_string().len() == digits + 1
                 && self.cells(index).all(|cell| cell.len() == digits)
         };
-        let mut parts = PARTS.iter();
-        let (_, unit, most) = parts.find(|(names, _, most)| is_named(names) || is_like(*most))?;
-        let is_part = |cell: &str| cell.parse::<u64>().is_ok_and(|number| number < *most);
-        self.cells(index).all(is_part).then_some(*unit)
+        let unit = PARTS
+            .into_iter()
+            .find(|unit| is_named(*unit) || is_like(*unit))?;
+        let is_part = |cell: &str| {
+            let number = cell.parse::<i128>();
+            number.is_ok_and(|number| (0..per_second(unit)).contains(&number))
+        };
+        self.cells(index).all(is_part).then_some(unit)
     }
 
     /// Whether the cells are whole seconds, or dates with whole seconds, that do not fall.
     fn are_whole_seconds(&self, index: usize) -> bool {
         let is_whole = |cell: &str| !cell.contains(['.', ',', 'e', 'E']);
+        self.cells(index).all(is_whole)
+            && self
+                .stamps(index)
+                .is_some_and(|stamps| stamps.len() > 1 && stamps.is_sorted())
+    }
+
+    /// The stamps that the cells are as dates or as seconds, ticks.
+    fn stamps(&self, index: usize) -> Option<Vec<i128>> {
         let unit = match self.holds_dates(index) {
             true => TimeUnit::Iso,
             false => TimeUnit::Seconds,
         };
-        let stamps = self.cells(index).filter(|cell| is_whole(cell));
-        let stamps = stamps.map(|cell| Stamp::read(cell, unit, self.layout.decimal).ok());
-        let stamps: Option<Vec<i128>> = stamps.map(|stamp| Some(stamp?.ticks)).collect();
-        let rows = self.cells(index).count();
-        stamps.is_some_and(|all| all.len() == rows && rows > 1 && all.is_sorted())
+        let stamps = self.cells(index).map(|cell| {
+            let stamp = Stamp::read(cell, unit, self.layout.decimal);
+            stamp.ok().map(|stamp| stamp.ticks)
+        });
+        stamps.collect()
     }
 
     /// Whether a heading has one of some words.
@@ -381,16 +355,7 @@ impl Chooser<'_> {
 
     /// Whether the cells are stamps that fall back once at most.
     fn rises(&self, index: usize) -> bool {
-        let unit = if self.holds_dates(index) {
-            TimeUnit::Iso
-        } else {
-            TimeUnit::Seconds
-        };
-        let stamps = self.cells(index).map(|cell| {
-            let stamp = Stamp::read(cell, unit, self.layout.decimal);
-            stamp.ok().map(|stamp| stamp.ticks)
-        });
-        let Some(stamps) = stamps.collect::<Option<Vec<i128>>>() else {
+        let Some(stamps) = self.stamps(index) else {
             return false;
         };
         let falls = stamps.windows(2).filter(|two| two[1] < two[0]).count();

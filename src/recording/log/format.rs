@@ -121,10 +121,8 @@ impl LogFormat {
             (&self.reference_column, "reference_column"),
             (&self.temperature_column, "temperature_column"),
         ];
-        both.into_iter().filter_map(|(name, key)| {
-            let (name, key) = (name.as_deref()?, Some(key));
-            Some(Asked { name, key })
-        })
+        both.into_iter()
+            .filter_map(|(name, key)| Some(Asked::by(name.as_deref()?, key)))
     }
 
     /// What is said of the reference: its unit alone, of which an angle runs on.

@@ -159,12 +159,11 @@ pub fn read_assembly_log(
     format: &LogFormat,
     columns: &AssemblyColumns<'_>,
 ) -> Result<AssemblyLog, LogError> {
-    let gyros = columns.gyros.map(|name| (name, "columns"));
-    let temperature = columns.temperature.map(|name| (name, "temperature_column"));
-    let asked = gyros.into_iter().chain(temperature).map(|(name, key)| {
-        let key = Some(key);
-        Asked { name, key }
-    });
+    let gyros = columns.gyros.map(|name| Asked::by(name, "columns"));
+    let temperature = columns
+        .temperature
+        .map(|name| Asked::by(name, "temperature_column"));
+    let asked = gyros.into_iter().chain(temperature);
     let wanted = Wanted {
         columns: Selection::Each(asked.collect()),
         ..wanted_by(format, Gaps::Refused)

@@ -13,6 +13,7 @@ use super::heading::ArrayHeading;
 use crate::recording::column::Columns;
 use crate::recording::error::LogError;
 use crate::recording::input::Input;
+use crate::recording::layout::Fault;
 use crate::recording::layout::Layout;
 use crate::recording::layout::columns::{Selection, choose};
 use crate::recording::log::format::LogFormat;
@@ -149,7 +150,7 @@ fn read_several(
         &wanted.columns,
         wanted.needs_time,
     )
-    .map_err(|error| LogError::of_file(path, &error).about(error.key()))?;
+    .map_err(|error| Fault::from(error).of(path))?;
     let found = format!("arrays {}", listed(&layout.names));
     let mut gather = Gather::new(path, &layout, chosen, wanted, found);
     let samples_max = u64::try_from(wanted.samples_max).unwrap_or(u64::MAX);

@@ -9,6 +9,7 @@ use super::number::Missing;
 use crate::recording::column::{Column, Columns};
 use crate::recording::error::{LogError, Place};
 use crate::recording::input::{Input, failure};
+use crate::recording::layout::Fault;
 use crate::recording::layout::Layout;
 use crate::recording::layout::columns::{Selection, choose};
 use crate::recording::log::format::LogFormat;
@@ -102,7 +103,7 @@ pub(in crate::recording) fn read_behind(
         let found = format!("records of {}", listed(&layout.names));
         (layout, chosen, found)
     };
-    let chosen = chosen.map_err(|error| LogError::of_file(path, &error).about(error.key()))?;
+    let chosen = chosen.map_err(|error| Fault::from(error).of(path))?;
     let mut gather = Gather::new(path, &layout, chosen, wanted, found);
     let samples_max = u64::try_from(wanted.samples_max).unwrap_or(u64::MAX);
     each_word(path, heading, &mut input, samples_max, &mut |word| {

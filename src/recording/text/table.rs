@@ -81,20 +81,14 @@ impl Rows {
         let mut lines = Lines::new(as_utf8(input, encoding), expected);
         let head = head(&mut lines, wanted.format, head_lines);
         let mut head = head.map_err(|error| fault(path, error))?;
-        let at = |fault: Fault| match fault.line {
-            Some(line) => {
-                LogError::at(path, Place::Line(line), &fault.error).about(fault.error.key())
-            }
-            None => LogError::of_file(path, &fault.error).about(fault.error.key()),
-        };
-        let Some(mut layout) = find(&head, wanted.format).map_err(at)? else {
+        let Some(mut layout) = find(&head, wanted.format).map_err(|fault| fault.of(path))? else {
             return Ok(None);
         };
         layout.encoding = encoding;
-        let said = layout.heading_line.unwrap_or(layout.first_row_line);
+        let line = Some(layout.heading_line.unwrap_or(layout.first_row_line));
         let heads = Heads::of(&layout, &head);
         let chosen = chosen(&layout, &head, &heads, wanted)
-            .map_err(|error| LogError::at(path, Place::Line(said), &error).about(error.key()))?;
+            .map_err(|error| Fault { line, error }.of(path))?;
         head.reverse();
         let table = Table::new(layout, heads, chosen, wanted);
         Ok(Some(Self {
@@ -341,7 +335,10 @@ impl Table {
         let at = |message: String| LogError::at(path, Place::Line(line), message);
         match error {
             RowError::Memory(error) => failure(path, error),
-            RowError::Layout(error) => at(error.to_string()).about(error.key()),
+            RowError::Layout(error) => {
+                let line = Some(line);
+                Fault { line, error }.of(path)
+            }
             RowError::Cell(index, message) => {
                 let name = self.layout.name(index);
                 let column = name.map(|name| format!("column {}: ", shown(&name)));
@@ -535,7 +532,7 @@ impl Table {
             got: self.record.len(),
             expected: self.layout.width(),
         };
-        Err(LogError::of_file(path, &error).about(error.key()))
+        Err(Fault::from(error).of(path))
     }
 
     /// Refuses a first row that may be a heading some of whose names are numbers: one that has words

@@ -446,6 +446,14 @@ fn mean_step(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
     time / steps
 }
 
+/// Steps from one stamp to the next within stretches.
+fn steps<'a>(stamps: &'a [f64], stretches: &'a [Range<usize>]) -> impl Iterator<Item = f64> + 'a {
+    let pairs = stretches
+        .iter()
+        .flat_map(|rows| stamps[rows.clone()].windows(2));
+    pairs.map(|pair| pair[1] - pair[0])
+}
+
 /// Step of the straight lines of one slope that fit the stamps of all stretches best.
 #[expect(
     clippy::cast_precision_loss,
@@ -470,23 +478,15 @@ fn slope(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
 
 /// Least step that is none of the same stamp again; 0 without one.
 fn least_rise(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
-    let all = stretches
-        .iter()
-        .flat_map(|rows| stamps[rows.clone()].windows(2));
-    let rises = all.map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    let rises = steps(stamps, stretches).filter(|step| *step > 0.0);
     let least = rises.fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 
 /// Mean of the steps that are no gaps.
 fn mean_of_steps_up_to(most: f64, stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
-    let all = stretches
-        .iter()
-        .flat_map(|rows| stamps[rows.clone()].windows(2));
-    let steps = all
-        .map(|pair| pair[1] - pair[0])
-        // Where a clock begins again, it does not run backwards.
-        .filter(|step| (0.0..=most).contains(step));
+    // Where a clock begins again, it does not run backwards.
+    let steps = steps(stamps, stretches).filter(|step| (0.0..=most).contains(step));
     let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
     sum / count
 }
@@ -507,10 +507,7 @@ fn median_step(stamps: &[f64], stretches: &[Range<usize>]) -> f64 {
         .map(|rows| rows.len().saturating_sub(1))
         .sum();
     let every = count.div_ceil(MEDIAN_STEPS).max(1);
-    let all = stretches
-        .iter()
-        .flat_map(|rows| stamps[rows.clone()].windows(2));
-    let mut steps: Vec<f64> = all.step_by(every).map(|pair| pair[1] - pair[0]).collect();
+    let mut steps: Vec<f64> = steps(stamps, stretches).step_by(every).collect();
     let middle = steps.len() / 2;
     let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
     *median

@@ -30,7 +30,7 @@ words! {
 }
 
 /// Other spellings, in small letters.
-const SPELLINGS: [(&str, TimeUnit); 21] = [
+const SPELLINGS: [(&str, TimeUnit); 27] = [
     ("sec", TimeUnit::Seconds),
     ("secs", TimeUnit::Seconds),
     ("second", TimeUnit::Seconds),
@@ -38,14 +38,20 @@ const SPELLINGS: [(&str, TimeUnit); 21] = [
     ("msec", TimeUnit::Milliseconds),
     ("msecs", TimeUnit::Milliseconds),
     ("millis", TimeUnit::Milliseconds),
+    ("millisec", TimeUnit::Milliseconds),
+    ("millisecond", TimeUnit::Milliseconds),
     ("milliseconds", TimeUnit::Milliseconds),
     ("usec", TimeUnit::Microseconds),
     ("usecs", TimeUnit::Microseconds),
     ("micros", TimeUnit::Microseconds),
+    ("microsec", TimeUnit::Microseconds),
+    ("microsecond", TimeUnit::Microseconds),
     ("microseconds", TimeUnit::Microseconds),
     ("nsec", TimeUnit::Nanoseconds),
     ("nsecs", TimeUnit::Nanoseconds),
     ("nanos", TimeUnit::Nanoseconds),
+    ("nanosec", TimeUnit::Nanoseconds),
+    ("nanosecond", TimeUnit::Nanoseconds),
     ("nanoseconds", TimeUnit::Nanoseconds),
     ("minutes", TimeUnit::Minutes),
     ("hours", TimeUnit::Hours),

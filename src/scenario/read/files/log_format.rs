@@ -14,6 +14,7 @@ use crate::scenario::document::tree::{Node, Table, Value, parse_document};
 use crate::scenario::message::error::{Location, ScenarioError};
 use crate::scenario::message::suggest::unknown_in_table;
 use crate::scenario::read::input;
+use crate::wording::option_of;
 
 /// The table of a file.
 const TABLE: &str = "log";
@@ -45,7 +46,7 @@ pub fn load_log_format(
             value: setting.clone().into_value(),
             mark: None,
         };
-        let option = format!("--{}", name.replace('_', "-"));
+        let option = option_of(name);
         if let Err(error) = check(name, name, &node) {
             errors.push(ScenarioError::at(
                 Location::of_file(option),

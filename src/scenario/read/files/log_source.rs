@@ -13,6 +13,7 @@ use crate::scenario::read::files::named_files::{LOG as TABLE, NamedFile};
 use crate::scenario::read::files::temperature_source::{check_axis, load_log_temperature};
 use crate::scenario::read::resolved::Resolved;
 use crate::seal::digest_of_words;
+use crate::wording::option_of;
 
 const FILE_KEY: &str = "log.file";
 const SEGMENTS_KEY: &str = "log.segments";
@@ -161,10 +162,7 @@ fn in_keys(message: &str) -> String {
     // The longest first, as some begin others.
     names.sort_by_key(|name| std::cmp::Reverse(name.len()));
     let said = names.into_iter().fold(message.to_owned(), |said, name| {
-        said.replace(
-            &format!("--{}", name.replace('_', "-")),
-            &format!("{TABLE}.{name}"),
-        )
+        said.replace(&option_of(name), &format!("{TABLE}.{name}"))
     });
     bounded(&said).into_owned()
 }
