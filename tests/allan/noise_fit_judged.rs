@@ -8,6 +8,7 @@ use fogbench::metrics::{
     AllanOptions, ChannelMetrics, FIT_TAU_PER_RECORD_MAX, FitRange, Motion, NoiseFit, Record,
     Settings, Term, fit_noise, measure, overlapping_allan,
 };
+use fogbench::signal::Rates;
 use rayon::prelude::*;
 
 use crate::support::records::normals;
@@ -47,7 +48,7 @@ fn measured(values: &[f64], sample_period_s: f64, tau_min_s: f64) -> ChannelMetr
     let record = Record {
         channel_deg_per_h: values,
         raw_deg_per_h: values,
-        truth_deg_per_h: &[],
+        truth_deg_per_h: Rates::UNKNOWN,
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s,

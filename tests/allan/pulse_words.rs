@@ -6,6 +6,7 @@ use fogbench::metrics::catalogue::{ANGLE_RANDOM_WALK, QUANTISATION, RATE_RANDOM_
 use fogbench::metrics::{
     AllanOptions, ChannelMetrics, Motion, Record, Settings, measure, record_fit_tau_min_s,
 };
+use fogbench::signal::Rates;
 use rayon::prelude::*;
 use serde_json::Value;
 
@@ -79,7 +80,7 @@ impl Words {
         let record = Record {
             channel_deg_per_h: values,
             raw_deg_per_h: values,
-            truth_deg_per_h: &[],
+            truth_deg_per_h: Rates::UNKNOWN,
             response_deg_per_h: &[],
             encoder_rad: None,
             drift: None,
