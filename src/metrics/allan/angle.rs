@@ -8,15 +8,11 @@ use rayon::prelude::*;
 use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 
 /// Samples that one thread integrates at a time.
-const PART: usize = 1 << 16;
+pub(crate) const PART: usize = 1 << 16;
 
 /// Second differences handled per pass over the cache: every tau visits a block before the next
 /// block is read, so that short ones read memory once altogether.
-const BLOCK: usize = 2048;
-
-/// Blocks that one thread handles in a row, so that what the longer of these tau read ahead is
-/// still in its cache when it is their turn.
-const BLOCKS_IN_A_ROW: usize = 32;
+pub(crate) const BLOCK: usize = 2048;
 
 /// Angle about the mean rate, `[n + 1]`, in units of (deg/h) times one sample period, from zero on.
 ///
@@ -72,7 +68,7 @@ pub(crate) fn angles_at_multiples(
 }
 
 /// Mean rate, and the angle about it at the start of every part.
-fn starts_of_parts(rates: &[f64]) -> (f64, Vec<f64>) {
+pub(crate) fn starts_of_parts(rates: &[f64]) -> (f64, Vec<f64>) {
     let (near, sums) = sums_of_parts(rates);
     let rest = rest_of_mean(&sums);
     let mut starts = Vec::with_capacity(sums.len());
@@ -85,7 +81,7 @@ fn starts_of_parts(rates: &[f64]) -> (f64, Vec<f64>) {
 }
 
 /// The angles behind `sum` after each rate of a part.
-fn integrate(rates: &[f64], mean: f64, mut sum: f64, angles: &mut [f64]) {
+pub(crate) fn integrate(rates: &[f64], mean: f64, mut sum: f64, angles: &mut [f64]) {
     for (angle, rate) in angles.iter_mut().zip(rates) {
         let step = rate - mean;
         sum += if step.is_nan() { 0.0 } else { step };
@@ -134,20 +130,16 @@ fn sum_about(rates: &[f64], near: f64) -> (f64, usize) {
     })
 }
 
-/// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` for every averaging factor m.
+/// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` of an array for every averaging factor m,
+/// part by part: what all that goes without the array is held against.
+#[cfg(test)]
 pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
-    let blocks: Vec<usize> = (0..angle.len()).step_by(BLOCK * BLOCKS_IN_A_ROW).collect();
-    let of_blocks = blocks.into_par_iter().map(|first| {
-        let mut sums = vec![0.0; factors.len()];
-        for start in (first..angle.len()).step_by(BLOCK).take(BLOCKS_IN_A_ROW) {
-            add_squares(&mut sums, factors, angle, (start, start + BLOCK));
-        }
-        sums
-    });
-    let parts: Vec<Vec<f64>> = of_blocks.collect();
-    // In the order of the parts, whichever thread was first.
     let mut sums = vec![0.0; factors.len()];
-    for part in parts {
+    for first in (0..angle.len()).step_by(PART) {
+        let mut part = vec![0.0; factors.len()];
+        for start in (first..angle.len().min(first + PART)).step_by(BLOCK) {
+            add_squares(&mut part, factors, angle, (start, start + BLOCK));
+        }
         for (sum, part) in sums.iter_mut().zip(part) {
             *sum += part;
         }
