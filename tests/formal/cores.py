@@ -26,6 +26,7 @@ class Core:
     told: str = "1'b1"  # what else an induction has to know
     out_waits: str = "1'b0"  # what holds the clock of the result back
     second: bool = True  # whether the machine has the register of this name
+    absent: tuple = ()  # states that its parameters leave out
     word_bits: int = 5
 
 
@@ -34,11 +35,11 @@ def rls(latency, period, **parameters):
                 ("add", "mul", "div"), "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, word_bits=32)
 
 
-def lms(files, units, last, latency, period, **parameters):
+def lms(files, units, last, latency, period, absent=(), **parameters):
     """A core under the control of lms_ctrl.v or sign_lms_ctrl.v, whose result comes in the state `last`."""
     return Core(files[0].removesuffix(".v"), files, parameters, files[1], "ctrl.", units,
                 f"state >= 4'd2 && state <= 4'd{last}", latency, period, out_waits="waits", second=False,
-                word_bits=parameters.get("W", 5))
+                absent=absent, word_bits=parameters.get("W", 5))
 
 
 # Words of five bits, two of them behind the point.
@@ -51,7 +52,7 @@ CORES = {
     "rls, forgetting": rls(31, 36, IALPHA=3),
     "rls, slow units": rls(35, 40, IALPHA=3, ADD_LATENCY=2),
     "rls, a division for each element": rls(31, 36, DIV_ELEM=1),
-    "lms": lms(LMS, (), 6, 4, 10, W=32, N=2),
+    "lms": lms(LMS, (), 6, 4, 10, ("LL_R", "LL_W"), W=32, N=2),
     "nlms": lms(LMS, ("with_divider.div",), 6, 7, 13, W=32, N=2, NLMS=1),
     "sign_lms": lms(SIGN_LMS, ("div",), 7, 7, 13, W=32, M=2, RECOMPUTE=4),
     "rls, fixed point": Core(
@@ -68,7 +69,8 @@ def states(core):
     """Names and numbers of the states of a core's control, as its text declares them."""
     text = (RTL / CORES[core].control).read_text()
     found = re.search(r"localparam \[3:0\] (IDLE .*?);", text, re.DOTALL)[1]
-    return {name: int(number) for name, number in re.findall(r"(\w+) *= 4'd(\d+)", found)}
+    return {name: int(number) for name, number in re.findall(r"(\w+) *= 4'd(\d+)", found)
+            if name not in CORES[core].absent}
 
 
 def source(name):

@@ -48,7 +48,7 @@ def trial(core, bug=None):
                    f"rename {design.top} {copy}", f"design -stash {copy}", "design -reset-vlog"]
     script += ["design -copy-from told told", "design -copy-from any any",
                "miter -equiv -flatten -make_assert told any both", "hierarchy -top both"]
-    return Trial(f"{core}: {right}" if bug else core, sources, script, ["-i", "-t", "1"])
+    return Trial(f"{core}: {right}" if bug else core, sources, script, ["-i", "-t", "1"], "z3")
 
 
 def run(scratch):

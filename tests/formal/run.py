@@ -2,7 +2,7 @@
 
     python3 tests/formal/run.py [PART…]
 
-YOSYS and SMTBMC name the programs; the solver is z3. A missing one is a failure.
+YOSYS and SMTBMC name the programs; the solvers are yices and z3. A missing one is a failure.
 """
 
 import importlib
@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-PARTS = ["stream", "memory_ports"]
+PARTS = ["stream", "memory_ports", "control"]
 
 
 def main():

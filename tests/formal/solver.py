@@ -20,7 +20,8 @@ class Trial:
     name: str
     sources: dict  # names of files, and their text
     script: list  # of yosys, up to the design whose properties are asked for
-    question: list  # arguments of the solver
+    question: list  # arguments of yosys-smtbmc
+    solver: str = "yices"
     folder: Path = field(default=None)
 
 
@@ -58,7 +59,7 @@ def ask(scratch, trials):
 def answer(trial):
     """What the solver says of a trial; that it is missing or fails ends the run."""
     start = time.monotonic()
-    run = subprocess.run([SMTBMC, "-s", "z3", *trial.question, "design.smt2"], cwd=trial.folder,
+    run = subprocess.run([SMTBMC, "-s", trial.solver, *trial.question, "design.smt2"], cwd=trial.folder,
                          capture_output=True, text=True, check=False)
     text = run.stdout + run.stderr
     if "Status: PASSED" not in text and "Status: FAILED" not in text:
