@@ -3,8 +3,8 @@
 import re
 import sys
 
-from cores import CORES, HERE, source, states, without
-from solver import Trial, ask, plant
+from cores import CORES, HERE, sources, states
+from solver import Trial, ask
 
 TOP = "control_properties"
 # Clocks beyond a sample: the reset, the clearing and some in which the source or a unit lets the core wait.
@@ -44,21 +44,6 @@ LEFT_OUT = [
 ]
 
 
-def header(core):
-    """Text of core.vh."""
-    design = CORES[core]
-    width = design.word_bits
-    legal = " || ".join(f"state == 4'd{number}" for number in states(core).values())
-    lines = {
-        "CORE": design.top,
-        "PARAMETERS": ", ".join(f".{name}({value})" for name, value in design.parameters.items()),
-        "X_BITS": width, "D_BITS": width, "LEGAL": legal,
-        "UNDER_WAY": design.under_way, "TOLD": design.told, "OUT_WAITS": design.out_waits,
-        "LATENCY": design.latency, "PERIOD": design.period,
-    }
-    return "".join(f"`define {name} {text}\n" for name, text in lines.items())
-
-
 def clocks(core):
     return str(CORES[core].period + MORE_CLOCKS)
 
@@ -70,16 +55,10 @@ def at_once(core):
 
 def trial(core, name, question, defines="", bug=None):
     design = CORES[core]
-    sources = {file: source(file) for file in design.files}
-    if bug:
-        file, right, wrong = bug
-        sources[file] = plant(file, sources[file], right, wrong)
-    if "fx.v" in sources:
-        sources["fx.v"] = without(sources["fx.v"], "fx_div")
+    texts = sources(core, "control.sv", bug=bug)
     covers = "".join(f"            {state.lower()}_reached: cover (state == 4'd{number});\n"
                      for state, number in states(core).items())
-    sources["core.vh"] = header(core)
-    sources["control.sv"] = (HERE / "control.sv").read_text().replace(
+    texts["control.sv"] = texts["control.sv"].replace(
         "            // States.\n", f"`ifdef STATES\n{covers}`endif\n")
     waits = [f"\\dut.{unit}.waits" for unit in design.units] + 3 * ["1'b0"]
     connections = {
@@ -88,11 +67,11 @@ def trial(core, name, question, defines="", bug=None):
         "ra_we": "\\dut.ra_we", "rb_we": "\\dut.rb_we",
         "waits_a": waits[0], "waits_b": waits[1], "waits_c": waits[2],
     }
-    files = " ".join(f"@/{file}" for file in sources if file != "core.vh")
+    files = " ".join(f"@/{file}" for file in texts if file != "core.vh")
     script = [f"read_verilog -sv -formal -DSYNTHESIS {defines} -I@/ {files}", f"hierarchy -check -top {TOP}",
               "proc", "flatten", *[f"connect -set {left} {right}" for left, right in connections.items()],
               f"prep -top {TOP}", "async2sync", "chformal -lower"]
-    return Trial(f"{core}: {name}", sources, script, question)
+    return Trial(f"{core}: {name}", texts, script, question)
 
 
 def run(scratch):

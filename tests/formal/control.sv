@@ -1,7 +1,7 @@
 // Properties of the control of a core, for any source and for units that withhold their results as they like.
 //
-// Words are left out: what a memory gives and what a unit computes is anything, so that the properties hold
-// for all data. core.vh says which core it is, and what to call its states.
+// Words are left out: what a memory gives and what a unit computes (free_units.sv) is anything, so that the
+// properties hold for all data. core.vh says which core it is, and what to call its states.
 `include "core.vh"
 
 module sp_ram #(
@@ -14,58 +14,6 @@ module sp_ram #(
     output wire [W-1:0]  rdata
 );
     assign rdata = $anyseq;
-endmodule
-
-module fp_add #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1) (
-    input  wire         clk, rst, req, take, sub,
-    input  wire [W-1:0] a, b,
-    output wire         done,
-    output wire [W-1:0] q
-);
-    wire   go    = $anyseq;
-    wire   waits = req & ~go;
-    assign done  = req & go;
-    assign q     = $anyseq;
-endmodule
-
-module fp_mul #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1) (
-    input  wire         clk, rst, req, take,
-    input  wire [W-1:0] a, b,
-    output wire         done,
-    output wire [W-1:0] q
-);
-    wire   go    = $anyseq;
-    wire   waits = req & ~go;
-    assign done  = req & go;
-    assign q     = $anyseq;
-endmodule
-
-module fp_div #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1) (
-    input  wire         clk, rst, req, take,
-    input  wire [W-1:0] a, b,
-    output wire         done,
-    output wire [W-1:0] q
-);
-    wire   go    = $anyseq;
-    wire   waits = req & ~go;
-    assign done  = req & go;
-    assign q     = $anyseq;
-endmodule
-
-module fx_div #(
-    parameter AW = 128, parameter WIDTH = 32, parameter RND = 1, parameter SAT = 1, parameter LATENCY = 1
-) (
-    input  wire                    clk, rst, req,
-    input  wire signed [AW-1:0]    a, b,
-    output wire                    done,
-    output wire signed [WIDTH-1:0] q,
-    output wire                    over
-);
-    wire   go    = $anyseq;
-    wire   waits = req & ~go;
-    assign done  = req & go;
-    assign q     = $anyseq;
-    assign over  = $anyseq;
 endmodule
 
 module control_properties (

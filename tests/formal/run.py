@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-PARTS = ["stream", "memory_ports", "control"]
+PARTS = ["stream", "memory_ports", "control", "reset"]
 
 
 def main():

@@ -45,7 +45,6 @@ def ask(scratch, trials):
         trial.folder.mkdir(parents=True)
         for name, text in trial.sources.items():
             (trial.folder / name).write_text(text)
-        lines.append(f"log {trial.name}")
         lines += [line.replace("@/", f"{number}/") for line in trial.script]
         lines += [f"write_smt2 -wires {number}/design.smt2", "design -reset", "design -reset-vlog"]
     (scratch / "designs.ys").write_text("\n".join(lines) + "\n")
