@@ -199,8 +199,8 @@ impl OverBound<'_> {
     /// Of given weights w gain and bound follow from the same autocovariance R of raw.
     ///
     /// A filter near its bound hardly moves with R. What is left is what the channel has beside `w'Rw`: the
-    /// words that the ends of a block cut off, which the next block takes back, so that of n blocks the
-    /// record as a whole has the ends of one, `1/n` of what a block has of its variance.
+    /// words that the ends of a record cut off. A block alone is such a record, and of n blocks the whole has
+    /// the ends of one, `1/n^2` of their variance.
     fn of_given(&self, value: f64, bound: f64, response: &[f64]) -> Estimate {
         let of_raw = |raw: &[f64]| noise_power_gain(response, raw);
         let left_out = self.without_blocks(|_, raw| of_raw(raw));
