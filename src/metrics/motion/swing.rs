@@ -465,12 +465,10 @@ fn measure_bound(
         bounds_without: &without,
     };
     of.put(facts, over.as_ref(), metrics);
-    let bound = bound.map(|least| {
-        let at = |delay| at(delay, &autocovariance).ok();
-        (least.over_delay(&delay, at, &left_out), least)
-    });
-    if let (Ok((bound, _)), None) = (&bound, &over) {
-        widen_over_bound(bound, &left_out, metrics);
+    let at = |delay| at(delay, &autocovariance).ok();
+    let bound = bound.map(|least| (least.over_delay(&delay, at, &left_out), least));
+    if over.is_none() {
+        widen_over_bound(&delay, at, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
     put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
