@@ -74,13 +74,16 @@ impl Shown {
                 .iter()
                 .map(|it| it - slow)
                 .collect();
-            // Its level by the words themselves, or by the fit: whichever meets the whole curve.
+            // Its level by the words themselves, or by the fit: whichever meets the curve.
             let own = Taps::of(&fast);
             let of_fit = own.as_ref().and_then(|own| own.scaled_to(white_variance));
             for taps in own.into_iter().chain(of_fit) {
                 let system = with(taps);
-                let seen = self.points.iter();
-                let seen = seen.filter(|point| point.averaged_samples >= WORDS_MIN);
+                // Beyond some times their number the taps are white noise, which the fit knows.
+                let seen = self
+                    .points
+                    .iter()
+                    .filter(|point| (WORDS_MIN..=2 * CURVE_LAGS).contains(&point.averaged_samples));
                 let worst = seen
                     .map(|point| Self::off(&system, point))
                     .fold(0.0, f64::max);
