@@ -38,8 +38,8 @@ RLS_IMAGE = "b_at == 4 || b_at == 7 ? 9 : 0"
 
 
 def rls(latency, period, **parameters):
-    return Core("rls_core", ("rls_core.v", "rls_ctrl.v"), {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.",
-                ("add", "mul", "div"), "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE,
+    return Core("rls_core", ("rls_core.v", "rls_ctrl.v", "den_check.v"),
+                {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.", ("add", "mul", "div"), "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE,
                 word_bits=32)
 
 
@@ -52,8 +52,8 @@ def lms(files, units, last, latency, period, absent=(), image="0", **parameters)
 
 # Words of five bits, two of them behind the point.
 FIXED = {f"W{signal}": 5 for signal in "XDTNKWY"} | {f"N{signal}": 2 for signal in "XDTNKWY"}
-LMS, LMS_FIXED = ("lms_core.v", "lms_ctrl.v"), ("lms_fixed_core.v", "lms_ctrl.v", "fx.v")
-SIGN_LMS = ("sign_lms_core.v", "sign_lms_ctrl.v")
+LMS, LMS_FIXED = ("lms_core.v", "lms_ctrl.v", "den_check.v"), ("lms_fixed_core.v", "lms_ctrl.v", "fx.v")
+SIGN_LMS = ("sign_lms_core.v", "sign_lms_ctrl.v", "den_check.v")
 SIGN_LMS_FIXED = ("sign_lms_fixed_core.v", "sign_lms_ctrl.v", "fx.v")
 CORES = {
     "rls": rls(31, 36),

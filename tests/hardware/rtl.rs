@@ -674,12 +674,13 @@ fn yosys_maps_the_datapaths_onto_distributed_memory() {
         // Plain LMS never divides.
         let dividers = u8::from(name != "lms");
         let script = format!(
-            "read_verilog {} {} {} {}; synth_xilinx -flatten -top {name}_core; \
+            "read_verilog {} {} {} {} {}; synth_xilinx -flatten -top {name}_core; \
              select -assert-count 1 t:fp_add; select -assert-count 1 t:fp_mul; \
              select -assert-count {dividers} t:fp_div; stat",
             boxes.display(),
             file(&format!("{name}_core.v")),
             file(&format!("{name}_ctrl.v")),
+            file("den_check.v"),
             file("sp_ram.v"),
         );
         let output = Command::new("yosys")

@@ -12,10 +12,11 @@ use crate::fpga::front_end::Pair;
 use crate::vocabulary::{Device, UnitSource};
 
 /// Files of every pipeline.
-const SHARED: [(&str, &str); 9] = [
+const SHARED: [(&str, &str); 10] = [
     ("README.txt", include_str!("rtl/README.txt")),
     ("fp_wait.v", include_str!("rtl/fp_wait.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
+    ("den_check.v", include_str!("rtl/den_check.v")),
     ("front_end.v", include_str!("rtl/front_end.v")),
     ("top_bench.v", include_str!("rtl/top_bench.v")),
     ("tb_common.vh", include_str!("rtl/tb_common.vh")),
@@ -116,10 +117,17 @@ pub fn write_rtl_parts<F: Fp>(
 }
 
 /// Script of the synthesis of a kind's top level for a device.
+<<<<<<< HEAD
 ///
 /// * `sources`: files of the RTL beside that of the top level.
 pub(super) fn synthesis(kind: &str, device: Device, sources: &str) -> String {
     let sources = format!("{kind}_top.v {sources}");
+=======
+fn synthesis(text: &str, kind: &str, device: Device, units: &str) -> String {
+    let sources = format!(
+        "{kind}_top.v front_end.v {kind}_core.v {kind}_ctrl.v den_check.v sp_ram.v fp_wait.v {units}"
+    );
+>>>>>>> proof
     let ports = format!("{kind}_axis.v axi_stream.v");
     SYNTHESIS
         .replace("@DEVICE@", device.word())

@@ -43,7 +43,6 @@ module lms_core #(
     output wire         indefinite  // one clock: the new DEN is a NaN or not above zero
 );
     localparam AB = N > 1 ? $clog2(N) : 1;
-    localparam FB = W == 64 ? 52 : 23;              // fraction bits
     /* verilator lint_off WIDTH */
     localparam [W-1:0] ONE  = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
     localparam [W-1:0] HALF = W == 64 ? 64'h3fe0000000000000 : 64'h3f000000;
@@ -137,11 +136,8 @@ module lms_core #(
 
     assign y = yy;
 
-    // Looked at in the register, a clock after it was loaded: not behind the adder.
-    reg den_new;
-    always @(posedge clk) den_new <= ~rst & den_en;
-    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
-    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
+    den_check #(.W(W)) check (
+        .clk(clk), .rst(rst), .load(den_en), .den(den), .indefinite(indefinite));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

@@ -48,7 +48,6 @@ module rls_core #(
 );
     localparam RA = $clog2(2 * P);
     localparam RB = $clog2(2 * P + P * P);
-    localparam FB = W == 64 ? 52 : 23;              // fraction bits
     /* verilator lint_off WIDTH */
     localparam [W-1:0] ONE = W == 64 ? 64'h3ff0000000000000 : 64'h3f800000;
     /* verilator lint_on WIDTH */
@@ -136,11 +135,8 @@ module rls_core #(
 
     assign y = yy;
 
-    // Looked at in the register, a clock after it was loaded: not behind the adder.
-    reg den_new;
-    always @(posedge clk) den_new <= ~rst & den_en;
-    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
-    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
+    den_check #(.W(W)) check (
+        .clk(clk), .rst(rst), .load(den_en), .den(den), .indefinite(indefinite));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

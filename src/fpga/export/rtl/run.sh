@@ -145,7 +145,7 @@ units=fp_sim.v
 if [ -f "$here/fp_units.v" ]; then units=fp_units.v; fi
 own=
 front=
-for file in "${filter}_core.v" "${filter%_fixed}_ctrl.v" sp_ram.v fp_wait.v fx.v; do
+for file in "${filter}_core.v" "${filter%_fixed}_ctrl.v" den_check.v sp_ram.v fp_wait.v fx.v; do
     if [ -f "$here/$file" ]; then own="$own $file"; fi
 done
 if [ -f "$here/$units" ]; then own="$own ${UNITS:-$units}"; fi

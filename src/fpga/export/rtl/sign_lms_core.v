@@ -148,11 +148,8 @@ module sign_lms_core #(
 
     assign y = yy;
 
-    // Looked at in the register, a clock after it was loaded: not behind the adder.
-    reg den_new;
-    always @(posedge clk) den_new <= ~rst & den_en;
-    wire den_nan = (&den[W-2:FB]) & (|den[FB-1:0]);
-    assign indefinite = den_new & (den[W-1] | den_nan | (den[W-2:0] == {(W-1){1'b0}}));
+    den_check #(.W(W)) check (
+        .clk(clk), .rst(rst), .load(den_en), .den(den), .indefinite(indefinite));
 
 `ifdef WAVE
     // Readable twins of the binary64 words.

@@ -51,7 +51,7 @@ def runner():
     # The first parameter of a core is its tap count, under the filter's usual letter.
     names = {key: key for key in declared} | {"TAPS": declared[0], "WIDTH": "W"}
     units = "fp_units.v" if (HERE / "fp_units.v").exists() else "fp_sim.v"
-    names_of_sources = (f"{top}.v", f"{kind}_ctrl.v", "sp_ram.v", "fp_wait.v", units)
+    names_of_sources = (f"{top}.v", f"{kind}_ctrl.v", "den_check.v", "sp_ram.v", "fp_wait.v", units)
     sources = [HERE / name for name in names_of_sources]
     simulator = get_runner(os.environ.get("SIM", "icarus"))
     with tempfile.TemporaryDirectory() as build:
