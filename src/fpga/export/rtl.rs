@@ -106,7 +106,7 @@ pub fn write_rtl_parts<F: Fp>(
         if let Some(device) = parts.device {
             let name = kind.name;
             let sources = format!(
-                "front_end.v {name}_core.v {name}_ctrl.v sp_ram.v fp_wait.v {}",
+                "front_end.v {name}_core.v {name}_ctrl.v den_check.v sp_ram.v fp_wait.v {}",
                 units.0
             );
             let text = synthesis(name, device, &sources);
@@ -117,17 +117,10 @@ pub fn write_rtl_parts<F: Fp>(
 }
 
 /// Script of the synthesis of a kind's top level for a device.
-<<<<<<< HEAD
 ///
 /// * `sources`: files of the RTL beside that of the top level.
 pub(super) fn synthesis(kind: &str, device: Device, sources: &str) -> String {
     let sources = format!("{kind}_top.v {sources}");
-=======
-fn synthesis(text: &str, kind: &str, device: Device, units: &str) -> String {
-    let sources = format!(
-        "{kind}_top.v front_end.v {kind}_core.v {kind}_ctrl.v den_check.v sp_ram.v fp_wait.v {units}"
-    );
->>>>>>> proof
     let ports = format!("{kind}_axis.v axi_stream.v");
     SYNTHESIS
         .replace("@DEVICE@", device.word())
