@@ -390,7 +390,17 @@ impl Search<'_> {
         if !is_start && !is_end {
             return Sides::of(self.words, (first, end), is_left_out).map(|sides| (sides, 1.0));
         }
-        if end - first > END_BURST_MAX {
+        // Words that still change beside it are the end of a motion, as the start-up of a mean is.
+        let near = if is_start {
+            end..(end + SIDE).min(count)
+        } else {
+            first.saturating_sub(SIDE)..first
+        };
+        let changes = self.words[near].windows(2);
+        let is_moving = changes
+            .map(|two| two[1] - two[0] - self.scale.drift)
+            .any(|change| change.abs() > self.scale.edge);
+        if end - first > END_BURST_MAX || is_moving {
             return None;
         }
         let sides = Sides::at_end(self.words, (first, end), is_start, is_left_out)?;
@@ -604,7 +614,8 @@ mod tests {
         let ramp = |t: f64| 500.0 * t;
         let swing = |t: f64| 36_000.0 * (TAU * t / 400.0).cos();
         let rise = |t: f64| (t - 4980.0).max(0.0).powi(2);
-        let motions: [&dyn Fn(f64) -> f64; 5] = [&decay, &step, &ramp, &swing, &rise];
+        let of_mean = |t: f64| 5e3 * ((t + 1.0) / 8.0).min(1.0);
+        let motions: [&dyn Fn(f64) -> f64; 6] = [&decay, &step, &ramp, &swing, &rise, &of_mean];
         for (case, motion) in motions.iter().enumerate() {
             assert_eq!(found(&with(white(22, 5000), motion)), [], "motion {case}");
         }
@@ -655,7 +666,7 @@ mod tests {
         let piece = OutlierStream::PIECE;
         for place in [
             0,
-            5,
+            40,
             piece,
             piece + OutlierStream::MARGIN,
             2 * piece + 3,
