@@ -103,9 +103,24 @@ const RUNS: [Run; 33] = [
     ("nlms-fixed", "", "DIV_LATENCY=5", ""),
     ("sign-lms-fixed", "", "DIV_LATENCY=2", ""),
     ("rls-fixed", "", "DIV_LATENCY=4", ""),
-    ("rls-fixed", "", "ADD_LATENCY=3 MUL_LATENCY=2 DIV_LATENCY=9", ""),
-    ("rls-fixed-wrapping", "", "ADD_LATENCY=4 MUL_LATENCY=3 DIV_LATENCY=5", ""),
-    ("rls-fixed-short", "", "ADD_LATENCY=2 MUL_LATENCY=5 DIV_LATENCY=30", ""),
+    (
+        "rls-fixed",
+        "",
+        "ADD_LATENCY=3 MUL_LATENCY=2 DIV_LATENCY=9",
+        "",
+    ),
+    (
+        "rls-fixed-wrapping",
+        "",
+        "ADD_LATENCY=4 MUL_LATENCY=3 DIV_LATENCY=5",
+        "",
+    ),
+    (
+        "rls-fixed-short",
+        "",
+        "ADD_LATENCY=2 MUL_LATENCY=5 DIV_LATENCY=30",
+        "",
+    ),
 ];
 
 /// Words of a stimulus: of a swing with noise, then some so large that their squares are infinite.
