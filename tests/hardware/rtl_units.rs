@@ -13,6 +13,7 @@ use fogbench::fpga::export::{
     ExportSettings, IntegerCodes, PipelineConfig, RtlParts, TopLevel, stimulus_pairs, write_rtl,
     write_rtl_parts,
 };
+use fogbench::fpga::fixed::rls::fixed_rls_stalled_clocks;
 use fogbench::fpga::float_unit::{FlushToZero, Fp};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::kinds::CoreSettings;
@@ -273,12 +274,12 @@ fn check_units<F: Fp>(latencies: &[u64]) {
 
 #[test]
 fn units_for_synthesis_have_the_bits_of_the_processor_in_binary64() {
-    check_units::<f64>(&[1, 5]);
+    check_units::<f64>(&[1, 5, 8]);
 }
 
 #[test]
 fn units_for_synthesis_have_the_bits_of_the_processor_in_binary32() {
-    check_units::<f32>(&[2, 6]);
+    check_units::<f32>(&[2, 6, 7]);
 }
 
 #[test]
@@ -669,9 +670,9 @@ fn units_of_other_latencies_are_refused_where_there_is_no_machine() {
 
 /// The table of the page on hardware: what was measured, and the clocks that the machine takes.
 fn table_of_syntheses() -> String {
-    let rows = include_str!("../synthesis/table.csv");
+    let rows = fs::read_to_string(repository("tests/synthesis/table.csv")).expect("the rows");
     let mut text = String::from(
-        "taps  words     device  clocks  Fmax MHz  us a sample      kHz   LUTs     FFs  DSPs  LUT RAMs\n",
+        "taps  words     device     units  clocks  Fmax MHz  us a sample      kHz  seeds    LUTs    FFs  DSPs  LUT RAMs\n",
     );
     let headings: Vec<&str> = rows.lines().next().expect("headings").split(',').collect();
     for row in rows.lines().skip(1) {
@@ -687,23 +688,28 @@ fn table_of_syntheses() -> String {
             forgets: true,
         };
         let units = pipelined(count("adder"), count("multiplier"), count("divider"));
-        let clocks = rls_stalled_clocks(load, units).expect("in range");
+        let latencies = ["adder", "multiplier", "divider"].map(cell).join(", ");
+        let clocks = match cell("format") {
+            "fixed" => fixed_rls_stalled_clocks(load.tap_count, load.forgets, units),
+            _ => rls_stalled_clocks(load, units).expect("in range"),
+        };
         let rates = match cell("fmax_mhz").parse::<f64>() {
             Ok(fmax) => {
                 let period_us = sample_period_us(clocks, fmax);
                 format!("{fmax:>8.1}  {period_us:>11.1} {:>8.1}", 1e3 / period_us)
             }
-            Err(_) if cell("device") == "xilinx" => {
-                format!("{:>8}  {:>11} {:>8}", "no router", "", "")
-            }
-            Err(_) => format!("{:>8}  {:>11} {:>8}", "unrouted", "", ""),
+            Err(_) if cell("device") == "xilinx" => format!("{:28} ", "no router"),
+            Err(_) if cell("fits") == "0" => format!("{:28} ", "does not fit"),
+            Err(_) => format!("{:28} ", "unrouted"),
         };
         writeln!(
             text,
-            "{:>4}  {:8}  {:6}  {clocks:>6}  {rates} {:>6}  {:>6}  {:>4}  {:>8}",
+            "{:>4}  {:8}  {:6}  {:>8}  {clocks:>6}  {rates} {:>5}  {:>6}  {:>5}  {:>4}  {:>8}",
             cell("taps"),
             cell("format"),
             cell("device"),
+            latencies,
+            cell("seeds"),
             cell("luts"),
             cell("flip_flops"),
             cell("dsps"),

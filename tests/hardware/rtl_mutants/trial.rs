@@ -37,7 +37,7 @@ const LONG_UNITS: &str =
 const PAUSES: &str = "+GAP=30 +GAP_SEED=3 +WITHDRAW";
 
 /// Runs of the filters of the scenario, and of some on words that leave the numbers.
-const RUNS: [Run; 30] = [
+const RUNS: [Run; 33] = [
     ("lms", "", "", ""),
     ("sign-lms", "", "", ""),
     ("nlms", "", "", ""),
@@ -103,6 +103,24 @@ const RUNS: [Run; 30] = [
     ("nlms-fixed", "", "DIV_LATENCY=5", ""),
     ("sign-lms-fixed", "", "DIV_LATENCY=2", ""),
     ("rls-fixed", "", "DIV_LATENCY=4", ""),
+    (
+        "rls-fixed",
+        "",
+        "ADD_LATENCY=3 MUL_LATENCY=2 DIV_LATENCY=9",
+        "",
+    ),
+    (
+        "rls-fixed-wrapping",
+        "",
+        "ADD_LATENCY=4 MUL_LATENCY=3 DIV_LATENCY=5",
+        "",
+    ),
+    (
+        "rls-fixed-short",
+        "",
+        "ADD_LATENCY=2 MUL_LATENCY=5 DIV_LATENCY=30",
+        "",
+    ),
 ];
 
 /// Words of a stimulus: of a swing with noise, then some so large that their squares are infinite.

@@ -12,8 +12,9 @@
 // same sign; a result is judged after rounding. FTZ = 0 keeps them.
 //
 // LATENCY of fp_add and fp_mul: 1 is combinational; from 2 on registers cut the path, as many less one;
-// beyond 5 (fp_add) and 6 (fp_mul) a unit only waits. LATENCY of fp_div: 1 and 2 do all rows of the division in a clock, n > 2
-// spreads them over n - 2 clocks: 4 rows of binary64 each with 16, one with 57.
+// beyond 6 (fp_add) and 8 (fp_mul) a unit only waits. LATENCY of fp_div: 1 and 2 do all rows of the division in
+// a clock, 3 to 5 spread them over as many clocks less two, n > 5 over n - 3 and round in two: 4 rows of
+// binary64 each with 17, one with 58.
 //
 // Plain Verilog-2005 without vendor primitives; the product is one of LIMB x LIMB bit products, which
 // synthesis places into multiplier blocks.
@@ -47,9 +48,11 @@ endmodule
 module fp_open #(
     parameter W   = 64,
     parameter FTZ = 0,
+    parameter CUT = 0,                      // 1: a register between the larger shifts and the smaller ones
     parameter EB  = W == 64 ? 11 : 8,       // exponent bits (derived)
     parameter FB  = W - 1 - EB              // fraction bits (derived)
 ) (
+    input  wire          clk,
     input  wire [W-1:0]  word,
     output wire          is_zero,
     output wire          is_inf,
@@ -62,29 +65,44 @@ module fp_open #(
     wire [FB-1:0] f = word[FB-1:0];
     wire low  = e == {EB{1'b0}};
     wire high = e == {EB{1'b1}};
-    assign is_zero = low & (FTZ != 0 | f == {FB{1'b0}});
-    assign is_inf  = high & f == {FB{1'b0}};
-    assign is_nan  = high & f != {FB{1'b0}};
+    wire none = f == {FB{1'b0}};
+    fp_cut #(.N(3), .ON(CUT)) kinds (.clk(clk), .d({low & (FTZ != 0 | none), high & none, high & ~none}),
+        .q({is_zero, is_inf, is_nan}));
 
     generate
         if (FTZ != 0) begin : flushed
-            assign significand = {~low, low ? {FB{1'b0}} : f};
-            assign exponent    = {2'b00, e};
+            fp_cut #(.N(EB + 2 + N), .ON(CUT)) cut (.clk(clk),
+                .d({2'b00, e, ~low, low ? {FB{1'b0}} : f}), .q({exponent, significand}));
         end else begin : kept
-            reg [N-1:0] s;
-            reg [5:0]   shift;
-            integer     k;
+            reg  [N-1:0]  s, t;
+            reg  [5:0]    shift, all;
+            wire [N-1:0]  c_s;
+            wire [5:0]    c_shift;
+            wire [EB-1:0] c_e;
+            integer       k;
             always @* begin
                 s     = {~low, f};
                 shift = 6'd0;
-                for (k = 5; k >= 0; k = k - 1)
+                for (k = 5; k >= 3; k = k - 1)
                     if ((1 << k) < N && s >> (N - (1 << k)) == {N{1'b0}}) begin
                         s        = s << (1 << k);
                         shift[k] = 1'b1;
                     end
             end
-            assign significand = s;
-            assign exponent    = {2'b00, e | {{(EB-1){1'b0}}, low}} - {{(EB-4){1'b0}}, shift};
+            fp_cut #(.N(EB + 6 + N), .ON(CUT)) cut (.clk(clk),
+                .d({e | {{(EB-1){1'b0}}, low}, shift, s}), .q({c_e, c_shift, c_s}));
+            integer       j;
+            always @* begin
+                t   = c_s;
+                all = c_shift;
+                for (j = 2; j >= 0; j = j - 1)
+                    if (t >> (N - (1 << j)) == {N{1'b0}}) begin
+                        t      = t << (1 << j);
+                        all[j] = 1'b1;
+                    end
+            end
+            assign significand = t;
+            assign exponent    = {2'b00, c_e} - {{(EB-4){1'b0}}, all};
         end
     endgenerate
 endmodule
@@ -176,6 +194,7 @@ module fp_add #(
     localparam ON2 = LATENCY > 2;
     localparam ON3 = LATENCY == 2 || LATENCY > 3;
     localparam ON4 = LATENCY > 2;
+    localparam ON5 = LATENCY > 5;
 
     /* verilator lint_off UNUSED */
     wire first;
@@ -240,28 +259,45 @@ module fp_add #(
         .d({s2_minus, s2_sign, s2_nan, s2_inf, s2_e, sum}),
         .q({s3_minus, s3_sign, s3_nan, s3_inf, s3_e, s3_s}));
 
-    // 4: shifted up until the leading one is at the top, or the exponent is the smallest.
+    // 4: shifted up until the leading one is at the top, or the exponent is the smallest; larger shifts first.
+    reg  [N:0]    w;
+    reg  [EB:0]   f;
+    integer       i;
+    always @* begin
+        w = s3_s;
+        // The carry's place is the top one, an exponent higher.
+        f = {1'b0, s3_e};
+        for (i = 5; i >= 3; i = i - 1)
+            if ((1 << i) < N + 1 && f >> i != {(EB+1){1'b0}} && w >> (N + 1 - (1 << i)) == {(N+1){1'b0}})
+            begin
+                w = w << (1 << i);
+                f = f - (1 << i);
+            end
+    end
+    wire          h_minus, h_sign, h_nan, h_inf, zero4;
+    wire [EB:0]   h_e;
+    wire [N:0]    h_s;
+    fp_cut #(.N(7 + EB + N), .ON(ON5)) half (.clk(clk),
+        .d({s3_minus, s3_sign, s3_nan, s3_inf, s3_s == {(N+1){1'b0}}, f, w}),
+        .q({h_minus, h_sign, h_nan, h_inf, zero4, h_e, h_s}));
     reg  [N:0]    s;
     reg  [EB:0]   e;
     integer       j;
     always @* begin
-        s = s3_s;
-        // The carry's place is the top one, an exponent higher.
-        e = {1'b0, s3_e};
-        for (j = 5; j >= 0; j = j - 1)
-            if ((1 << j) < N + 1 && e >> j != {(EB+1){1'b0}} && s >> (N + 1 - (1 << j)) == {(N+1){1'b0}})
-            begin
+        s = h_s;
+        e = h_e;
+        for (j = 2; j >= 0; j = j - 1)
+            if (e >> j != {(EB+1){1'b0}} && s >> (N + 1 - (1 << j)) == {(N+1){1'b0}}) begin
                 s = s << (1 << j);
                 e = e - (1 << j);
             end
     end
     // Zero has the sign of both, or none; +0 from a difference.
-    wire          zero4 = s3_s == {(N+1){1'b0}};
     wire          s4_sign, s4_nan, s4_inf;
     wire [EB:0]   s4_e;
     wire [N:0]    s4_s;
     fp_cut #(.N(5 + EB + N), .ON(ON4)) cut4 (.clk(clk),
-        .d({s3_sign & ~(zero4 & s3_minus), s3_nan, s3_inf, zero4 ? {(EB+1){1'b0}} : e, s}),
+        .d({h_sign & ~(zero4 & h_minus), h_nan, h_inf, zero4 ? {(EB+1){1'b0}} : e, s}),
         .q({s4_sign, s4_nan, s4_inf, s4_e, s4_s}));
 
     // 5: rounded; e counts from 0 for numbers below the smallest normal one.
@@ -301,6 +337,8 @@ module fp_mul #(
     localparam ON2 = LATENCY == 2 || LATENCY > 3;
     localparam ON3 = LATENCY > 2;
     localparam ON4 = LATENCY > 4;
+    localparam ON5 = LATENCY > 6;
+    localparam ON6 = LATENCY > 7;
     /* verilator lint_off WIDTH */
     localparam [EB+2:0] BIAS = (1 << (EB - 1)) - 1;
     /* verilator lint_on WIDTH */
@@ -317,16 +355,18 @@ module fp_mul #(
     wire          a_zero, a_inf, a_nan, b_zero, b_inf, b_nan;
     wire [EB+1:0] ea, eb;
     wire [FB:0]   fa, fb;
-    fp_open #(.W(W), .FTZ(FTZ)) open_a (.word(s0_a), .is_zero(a_zero), .is_inf(a_inf), .is_nan(a_nan),
+    fp_open #(.W(W), .FTZ(FTZ), .CUT(ON5)) open_a (.clk(clk), .word(s0_a), .is_zero(a_zero), .is_inf(a_inf), .is_nan(a_nan),
         .exponent(ea), .significand(fa));
-    fp_open #(.W(W), .FTZ(FTZ)) open_b (.word(s0_b), .is_zero(b_zero), .is_inf(b_inf), .is_nan(b_nan),
+    fp_open #(.W(W), .FTZ(FTZ), .CUT(ON5)) open_b (.clk(clk), .word(s0_b), .is_zero(b_zero), .is_inf(b_inf), .is_nan(b_nan),
         .exponent(eb), .significand(fb));
     wire nan1 = a_nan | b_nan | (a_inf & b_zero) | (b_inf & a_zero);
+    wire sign1;
+    fp_cut #(.N(1), .ON(ON5)) signs (.clk(clk), .d(s0_a[W-1] ^ s0_b[W-1]), .q(sign1));
     wire          s1_sign, s1_zero, s1_inf, s1_nan;
     wire [EB+1:0] s1_ea, s1_eb;
     wire [FB:0]   s1_fa, s1_fb;
     fp_cut #(.N(2 * EB + 2 * FB + 10), .ON(ON1)) cut1 (.clk(clk),
-        .d({s0_a[W-1] ^ s0_b[W-1], a_zero | b_zero, a_inf | b_inf, nan1, ea, eb, fa, fb}),
+        .d({sign1, a_zero | b_zero, a_inf | b_inf, nan1, ea, eb, fa, fb}),
         .q({s1_sign, s1_zero, s1_inf, s1_nan, s1_ea, s1_eb, s1_fa, s1_fb}));
 
     // 2: products of limbs, and the exponent as if the product were in [2, 4).
@@ -350,20 +390,40 @@ module fp_mul #(
         .d({s1_sign, s1_zero, s1_inf, s1_nan, e2, parts}),
         .q({s2_sign, s2_zero, s2_inf, s2_nan, s2_e, s2_parts}));
 
-    // 3: their sum. Products of equal weight parity do not overlap and are one number.
+    // 3: their sum, that of each row first.
+    localparam RW = (L + 1) * LIMB;         // bits of the sum of a row
+    wire [RW*L-1:0] rows, h_rows;
+    reg  [RW-1:0]   of_row;
+    reg  [RW*L-1:0] all_rows;
+    integer         m, n;
+    always @* begin
+        all_rows = {(RW*L){1'b0}};
+        of_row   = {RW{1'b0}};
+        for (m = 0; m < L; m = m + 1) begin
+            of_row = {RW{1'b0}};
+            for (n = 0; n < L; n = n + 1)
+                of_row = of_row + ({{(RW-2*LIMB){1'b0}}, s2_parts[2*LIMB*(m*L+n) +: 2*LIMB]} << (LIMB * n));
+            all_rows[RW*m +: RW] = of_row;
+        end
+    end
+    assign rows = all_rows;
+    wire          h_sign, h_zero, h_inf, h_nan;
+    wire [EB+2:0] h_e;
+    fp_cut #(.N(EB + 7 + RW * L), .ON(ON6)) half (.clk(clk),
+        .d({s2_sign, s2_zero, s2_inf, s2_nan, s2_e, rows}),
+        .q({h_sign, h_zero, h_inf, h_nan, h_e, h_rows}));
     reg [N-1:0] total;
-    integer     m, n;
+    integer     k;
     always @* begin
         total = {N{1'b0}};
-        for (m = 0; m < L; m = m + 1)
-            for (n = 0; n < L; n = n + 1)
-                total = total + ({{(N-2*LIMB){1'b0}}, s2_parts[2*LIMB*(m*L+n) +: 2*LIMB]} << (LIMB * (m + n)));
+        for (k = 0; k < L; k = k + 1)
+            total = total + ({{(N-RW){1'b0}}, h_rows[RW*k +: RW]} << (LIMB * k));
     end
     wire          s3_sign, s3_zero, s3_inf, s3_nan;
     wire [EB+2:0] s3_e;
     wire [2*FB+1:0] s3_t;
     fp_cut #(.N(EB + 7 + 2 * FB + 2), .ON(ON3)) cut3 (.clk(clk),
-        .d({s2_sign, s2_zero, s2_inf, s2_nan, s2_e, total[2*FB+1:0]}),
+        .d({h_sign, h_zero, h_inf, h_nan, h_e, total[2*FB+1:0]}),
         .q({s3_sign, s3_zero, s3_inf, s3_nan, s3_e, s3_t}));
 
     // 4 and 5: normalised by one place at most, rounded.
@@ -393,7 +453,8 @@ module fp_div #(
     localparam EB = W == 64 ? 11 : 8;
     localparam FB = W - 1 - EB;
     localparam QB   = FB + 3;               // bits of the quotient
-    localparam N    = LATENCY > 3 ? LATENCY - 2 : 1;    // clocks of the rows
+    localparam CUT  = LATENCY > 5;          // a register within the rounding
+    localparam N    = LATENCY > 3 ? LATENCY - 2 - CUT : 1;  // clocks of the rows
     localparam ROWS = (QB + N - 1) / N;     // rows a clock
     localparam R    = (QB + ROWS - 1) / ROWS * ROWS;    // rows done, some more than needed
     /* verilator lint_off WIDTH */
@@ -407,9 +468,9 @@ module fp_div #(
     wire          a_zero, a_inf, a_nan, b_zero, b_inf, b_nan;
     wire [EB+1:0] ea, eb;
     wire [FB:0]   fa, fb;
-    fp_open #(.W(W), .FTZ(FTZ)) open_a (.word(a), .is_zero(a_zero), .is_inf(a_inf), .is_nan(a_nan),
+    fp_open #(.W(W), .FTZ(FTZ)) open_a (.clk(clk), .word(a), .is_zero(a_zero), .is_inf(a_inf), .is_nan(a_nan),
         .exponent(ea), .significand(fa));
-    fp_open #(.W(W), .FTZ(FTZ)) open_b (.word(b), .is_zero(b_zero), .is_inf(b_inf), .is_nan(b_nan),
+    fp_open #(.W(W), .FTZ(FTZ)) open_b (.clk(clk), .word(b), .is_zero(b_zero), .is_inf(b_inf), .is_nan(b_nan),
         .exponent(eb), .significand(fb));
 
     // What is known at once, held from the first clock on where there are more.
@@ -486,7 +547,7 @@ module fp_div #(
     // The quotient is in (1/2, 2): its first bit may be 0.
     wire         top = end_quo[R-1];
     wire [R-1:0] t   = top ? end_quo : end_quo << 1;
-    fp_close #(.W(W), .FTZ(FTZ)) close (
+    fp_close #(.W(W), .FTZ(FTZ), .CUT(CUT)) close (
         .clk(clk), .sign(s_sign), .is_zero(s_zero), .is_inf(s_inf), .is_nan(s_nan),
         .exponent(top ? s_e : s_e - 1'b1), .significand(t[R-1 -: FB+2]),
         .sticky(t[R-FB-3:0] != {(R-FB-2){1'b0}} | end_rem != {(FB+2){1'b0}}), .q(q));

@@ -14,7 +14,7 @@
 #   SIM_FLAGS="..."          more options of the simulator's compiler
 #   CXX=c++ CXXFLAGS="..."   C++ compiler of Verilator and more of its options
 #   DIV_LATENCY=n            a divider of n clocks; the words must not change
-#   ADD_LATENCY=n            the same of adder and multiplier (rls only)
+#   ADD_LATENCY=n            the same of adder and multiplier (rls and rls_fixed only)
 #   MUL_LATENCY=n
 #   UNITS=fp_sim.v           file of the floating-point units, default fp_units.v where it is
 #   BLACK_BOX=1              compares only output words and clocks: for a core of your own
