@@ -39,8 +39,8 @@ RLS_IMAGE = "b_at == 4 || b_at == 7 ? 9 : 0"
 
 def rls(latency, period, **parameters):
     return Core("rls_core", ("rls_core.v", "rls_ctrl.v", "den_check.v"),
-                {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.", ("add", "mul", "div"), "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE,
-                word_bits=32)
+                {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.", ("add", "mul", "div"),
+                "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE, word_bits=32)
 
 
 def lms(files, units, last, latency, period, absent=(), image="0", **parameters):
