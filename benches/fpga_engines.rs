@@ -1,12 +1,14 @@
 //! Pipelines against plain code: nanoseconds per sample without clocks, simulated clocks per
 //! second with them.
 //!
-//! `plain_loop` is the recursion as one would write it in C: fixed arrays, nothing generic, the
-//! same order of operations. The clock-less engine is to stay within 1.2 times of it.
+//! `plain_loop` is the recursion as one would write it in C (`plain_filters.rs`). The clock-less engine is to stay within 1.2 times of it.
 //!
 //! The last part simulates the exported RTL under Icarus Verilog (with its testbench) and
 //! Verilator (bare, driven from C++) and prints clock rates as ratios. Without the simulators it
 //! says so.
+
+#[path = "plain_filters.rs"]
+mod plain_filters;
 
 use std::hint::black_box;
 use std::path::Path;
@@ -19,6 +21,8 @@ use fogbench::fpga::export::{ExportSettings, PipelineConfig, write_rtl};
 use fogbench::fpga::front_end::{FrontEnd, Pair};
 use fogbench::fpga::rls::{RlsConfig, RlsEngine, RlsPipeline, RlsSettings, rls_clocks_per_sample};
 use fogbench::vocabulary::{Division, UpdateSign};
+
+use plain_filters::PlainRls;
 
 const SAMPLES: usize = 4096;
 
@@ -47,66 +51,15 @@ fn pairs() -> Vec<Pair<f64>> {
         .collect()
 }
 
-/// State of the hand-written loop.
-struct Plain {
-    l: [f64; 4],
-    w: [f64; 4],
-    r: [[f64; 4]; 4],
-}
-
-#[inline(never)]
-fn plain_loop(state: &mut Plain, pairs: &[Pair<f64>], outputs: &mut [f64]) {
-    let Plain { l, w, r } = state;
-    for (pair, output) in pairs.iter().zip(outputs) {
-        *l = [pair.input, l[0], l[1], l[2]];
-        let mut t = [0.0; 4];
-        for i in 0..4 {
-            for j in 0..4 {
-                t[i] += l[j] * r[i][j];
-            }
-        }
-        let mut den = 1.0;
-        for j in 0..4 {
-            den += l[j] * t[j];
-        }
-        let rcp = 1.0 / den;
-        for i in 0..4 {
-            for j in 0..4 {
-                r[i][j] -= (t[i] * t[j]) * rcp;
-            }
-        }
-        let mut y = 0.0;
-        for j in 0..4 {
-            y += l[j] * w[j];
-        }
-        let e = pair.desired - y;
-        for i in 0..4 {
-            let mut m = 0.0;
-            for j in 0..4 {
-                m += l[j] * r[i][j];
-            }
-            w[i] += m * e;
-        }
-        *output = y;
-    }
-}
-
 fn clock_less(criterion: &mut Criterion) {
     let pairs = pairs();
     let mut group = criterion.benchmark_group("rls_4_taps_per_sample");
     group.throughput(Throughput::Elements(SAMPLES as u64));
     group.bench_function("plain_loop", |bencher| {
-        let mut state = Plain {
-            l: [0.0; 4],
-            w: [0.0; 4],
-            r: [[0.0; 4]; 4],
-        };
-        for i in 0..4 {
-            state.r[i][i] = 1e4;
-        }
+        let mut state = PlainRls::new(1e4);
         let mut outputs = vec![0.0; SAMPLES];
         bencher.iter(|| {
-            plain_loop(&mut state, black_box(&pairs), &mut outputs);
+            state.run(black_box(&pairs), &mut outputs);
             black_box(outputs[SAMPLES - 1])
         });
     });

@@ -66,9 +66,9 @@ pub enum FpgaError {
     /// There is no export of this form.
     #[error("there is no waveform of fixed-point words: export rtl and run it with +VCD=wave.vcd")]
     FixedWaveform,
-    /// Fixed-point words have units of their own.
+    /// The units of these fixed-point words take a clock each.
     #[error(
-        "fixed-point words are exported with units of their own: leave --units, --synth and the latencies out; run.sh takes DIV_LATENCY"
+        "units of several clocks are there for rls alone in fixed point: leave the latencies out; run.sh takes DIV_LATENCY"
     )]
     FixedUnits,
     /// Two sequences that belong together differ in length.

@@ -53,12 +53,13 @@ pub(crate) const SPECTRUM_POINTS_MAX: usize = 400;
 /// ```
 /// use fogbench::metrics::catalogue::{DC_GAIN, MEAN, NOISE_STD};
 /// use fogbench::metrics::{AllanOptions, Motion, Record, Settings, measure};
+/// use fogbench::signal::Rates;
 ///
 /// let words: Vec<f64> = (0..4000).map(|k| 10.0 + f64::from(k % 2)).collect();
 /// let record = Record {
 ///     channel_deg_per_h: &words,
 ///     raw_deg_per_h: &words,
-///     truth_deg_per_h: &[],
+///     truth_deg_per_h: Rates::UNKNOWN,
 ///     response_deg_per_h: &[],
 ///     encoder_rad: None,
 ///     sample_period_s: 0.01,
@@ -85,7 +86,7 @@ pub fn measure(
     filter: Option<&FilterFacts>,
 ) -> ChannelMetrics {
     let samples = record.channel_deg_per_h.len();
-    let truths = record.truth().map_or(samples, <[f64]>::len);
+    let truths = record.truth().map_or(samples, |truth| truth.len());
     assert!(
         record.raw_deg_per_h.len() == samples && truths == samples,
         "channel, raw and truth hold {samples}, {} and {truths} samples",
@@ -96,7 +97,7 @@ pub fn measure(
         answers == 0 || answers >= samples,
         "channel and response of the gyro hold {samples} and {answers} samples"
     );
-    let readings = record.encoder_rad.map_or(samples, <[f64]>::len);
+    let readings = record.encoder_rad.map_or(samples, |truth| truth.len());
     assert!(
         readings == samples,
         "channel and encoder hold {samples} and {readings} samples"
@@ -216,7 +217,7 @@ fn measure_by_motion(
             if let Some(facts) = filter {
                 let all = 0..record.channel_deg_per_h.len();
                 measure_mean_ratio(record, all, facts, metrics);
-                match onset(record.truth_deg_per_h) {
+                match onset(&record.truth_deg_per_h.words()) {
                     Some(start) => measure_after_step(record, start, facts, metrics),
                     None => {
                         metrics.miss(&READAPTATION_TIME, "the motion does not end at a new rate")

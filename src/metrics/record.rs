@@ -11,7 +11,7 @@ use super::estimate::value::Estimate;
 use super::theory::learning::{LearnedWeights, Learning, NOT_FROM_ONE_RECORD};
 use super::theory::memory::impulse_response;
 use super::theory::prediction::Prediction;
-use crate::signal::{Bridge, FilterShape, SlowDrift, WeightRule};
+use crate::signal::{Bridge, FilterShape, Rates, SlowDrift, WeightRule};
 
 /// Fewest samples worth measuring.
 pub(crate) const SAMPLES_MIN: usize = 64;
@@ -26,7 +26,7 @@ pub struct Record<'a> {
     /// The unfiltered gyro, deg/h; the channel itself when raw is measured.
     pub raw_deg_per_h: &'a [f64],
     /// The true rate at the stamps, deg/h; empty where nobody knows it, as of a recorded log.
-    pub truth_deg_per_h: &'a [f64],
+    pub truth_deg_per_h: Rates<'a>,
     /// What the gyro makes of the motion without noise, deg/h: it ends with the record and may begin
     /// before it, by what the filters saw; empty where nobody knows it.
     pub response_deg_per_h: &'a [f64],
@@ -44,7 +44,7 @@ pub struct Record<'a> {
 impl<'a> Record<'a> {
     /// The true rate at the stamps, deg/h, where it is known.
     #[must_use]
-    pub fn truth(&self) -> Option<&'a [f64]> {
+    pub fn truth(&self) -> Option<Rates<'a>> {
         (!self.truth_deg_per_h.is_empty()).then_some(self.truth_deg_per_h)
     }
 

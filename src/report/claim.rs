@@ -44,11 +44,11 @@ pub fn claim_text(claim: &Claim, rate_hz: Option<f64>) -> String {
 /// What reads the same, the simplest first.
 fn lines(figure: ClaimedFigure, found: &Lookalikes, rate_hz: Option<f64>) -> [String; 4] {
     let taps = rate_hz.map_or_else(String::new, |rate_hz| {
-        format!(
-            ", {} taps at {} Hz",
-            plain(found.mean_taps(rate_hz)),
-            plain(rate_hz)
-        )
+        let rate = plain(rate_hz);
+        match found.mean_taps(rate_hz) {
+            Some(taps) => format!(", {} taps at {rate} Hz", plain(taps)),
+            None => format!(", for which words at {rate} Hz are too slow"),
+        }
     });
     let none = match figure {
         ClaimedFigure::AngleRandomWalk => "if the ARW was fitted well beyond the filter's memory",

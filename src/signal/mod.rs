@@ -4,6 +4,7 @@
 
 mod bridge;
 mod calibration;
+mod rates;
 mod slow_drift;
 mod temperature_model;
 
@@ -13,6 +14,7 @@ pub use calibration::{
     CalibrationRank, CalibrationSheet, CalibrationTruth, CompensationCheck, EstimateError,
     ParameterRounding,
 };
+pub use rates::{RateRecord, Rates};
 pub use slow_drift::SlowDrift;
 pub use temperature_model::TemperatureModel;
 
@@ -331,7 +333,7 @@ pub struct RunSignals<'a> {
     /// Prefix of the channels of this gyro: empty, or `x_`, `y_`, `z_` in an assembly.
     pub prefix: &'a str,
     /// Inertial rate of the axis at each stamp, deg/h; empty where nobody knows it.
-    pub truth_deg_per_h: &'a [f64],
+    pub truth_deg_per_h: Rates<'a>,
     /// Angle that the table's encoder shows at each stamp, rad; none if the table has none.
     pub encoder_rad: Option<&'a [f64]>,
     /// Digest of the words that the filters are given, warm-up included; none where no samples are written

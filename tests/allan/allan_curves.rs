@@ -213,6 +213,29 @@ fn the_fit_of_a_log_begins_beyond_the_correlation_it_shows() {
     assert!((samples(&drift) - 4.0).abs() < 1e-9);
     assert!((samples(&sum) - 4.0).abs() < 1e-9);
     assert!((samples(&raw[..100]) - 4.0).abs() < 1e-9);
+    // Nor does it hide one.
+    let hidden: Vec<f64> = drift
+        .iter()
+        .zip(&average)
+        .map(|(slow, fast)| 0.1 * slow + fast)
+        .collect();
+    let of_hidden = samples(&hidden) / 100.0;
+    assert!((3.0..6.0).contains(&of_hidden), "{of_hidden} lengths");
+    // Nor is noise with a correlation time beside white noise: a fit beyond it would take it for N.
+    for (time, level) in [(300.0, 0.3), (300.0, 3.0), (60.0, 1.0)] {
+        let decay = f64::exp(-1.0 / time);
+        let mut state = 0.0;
+        let beside: Vec<f64> = white(10, 200_000, level * (1.0 - decay * decay).sqrt())
+            .iter()
+            .zip(&raw)
+            .map(|(drive, fast)| {
+                state = decay * state + drive;
+                state + fast
+            })
+            .collect();
+        let found = samples(&beside);
+        assert!((found - 10.0).abs() < 1e-9, "{time} {level}: {found}");
+    }
 }
 
 #[test]

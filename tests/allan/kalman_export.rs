@@ -10,16 +10,42 @@ use fogbench::random::Streams;
 
 const RATE_HZ: f64 = 10.0;
 
+/// How the words of a log came about.
+#[derive(Clone, Copy, Debug)]
+enum Words {
+    /// Behind a pole that remembers half of the word before.
+    Pole,
+    /// Of an angle that is rounded.
+    Rounded(f64),
+    /// Means of so many.
+    Mean(usize),
+    /// Behind a pole of so many words.
+    LongPole(f64),
+}
+
 /// An hour and more of white noise and a walk, with the angle rounded or the words smoothed.
-fn log(folder: &Path, angle_step: Option<f64>) {
+fn log(folder: &Path, words: Words) {
     let mut random = Streams::new(7, 0).stream("log");
     let (mut bias, mut angle, mut before) = (0.0, 0.0_f64, 0.0_f64);
     let mut smooth = 0.0;
+    let (mut drives, mut sum) = (std::collections::VecDeque::new(), 0.0);
     let mut text = String::new();
     for _ in 0..60_000 {
         bias += 0.01 * random.normal();
-        smooth += 0.5 * (3.0 * random.normal() - smooth);
-        let word = if let Some(step) = angle_step {
+        let decay = match words {
+            Words::LongPole(time) => f64::exp(-1.0 / time),
+            _ => 0.5,
+        };
+        let drive = 3.0 * random.normal();
+        smooth += (1.0 - decay) * (drive - smooth);
+        let word = if let Words::Mean(count) = words {
+            drives.push_back(drive);
+            sum += drive;
+            if drives.len() > count {
+                sum -= drives.pop_front().expect("one more than the mean");
+            }
+            sum / count as f64 + bias
+        } else if let Words::Rounded(step) = words {
             // An arcsecond in a second is a degree in an hour.
             angle += (0.2 * random.normal() + bias) / RATE_HZ;
             let rounded = (angle / step).round() * step;
@@ -153,9 +179,15 @@ fn model(folder: &Path, more: &[&str]) -> Value {
 
 #[test]
 fn a_log_comes_back_from_its_system() {
-    for (angle_step, state) in [(None, "angle_random_walk"), (Some(0.1), "quantisation")] {
+    for (words, state) in [
+        (Words::Pole, "angle_random_walk"),
+        (Words::Rounded(0.1), "quantisation"),
+        // One pole of the fit's own is twice the Allan deviation of a mean of eight at two words.
+        (Words::Mean(8), "smoothing_7"),
+        (Words::LongPole(5.0), "smoothing_9"),
+    ] {
         let folder = tempfile::tempdir().expect("a scratch folder");
-        log(folder.path(), angle_step);
+        log(folder.path(), words);
         let document = model(folder.path(), &[]);
         let states = document["states"].as_array().expect("states");
         let names: Vec<&str> = states.iter().filter_map(|it| it["name"].as_str()).collect();
@@ -208,9 +240,25 @@ fn a_log_comes_back_from_its_system() {
 }
 
 #[test]
+fn the_range_of_a_system_is_that_in_which_it_is_the_words() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    log(folder.path(), Words::Mean(50));
+    let document = model(folder.path(), &[]);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let shortest = number(&document["tau_min_s"]);
+    assert!((0.3..25.0).contains(&shortest), "{shortest}");
+    let curve = document["allan_deviation"].as_array().expect("a curve");
+    assert!((number(&curve[0]["tau_s"]) - shortest).abs() < 1e-9);
+    log(folder.path(), Words::Mean(8));
+    let document = model(folder.path(), &[]);
+    let shortest = number(&document["tau_min_s"]);
+    assert!((shortest - 2.0 / RATE_HZ).abs() < 1e-9, "{shortest}");
+}
+
+#[test]
 fn outliers_are_left_out_and_shorten_nothing() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    log(folder.path(), None);
+    log(folder.path(), Words::Pole);
     let clean = model(folder.path(), &[]);
     let text = fs::read_to_string(folder.path().join("log.csv")).expect("the log");
     let mut words: Vec<&str> = text.lines().collect();
@@ -226,7 +274,7 @@ fn outliers_are_left_out_and_shorten_nothing() {
 #[test]
 fn a_file_of_the_user_stays() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    log(folder.path(), None);
+    log(folder.path(), Words::Pole);
     write(folder.path(), "noise.json", "{\"mine\": true}\n");
     let refused = analyze(folder.path(), &["--kalman", "noise.json"]);
     assert_eq!(code(&refused), 2);

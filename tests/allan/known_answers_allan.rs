@@ -5,6 +5,7 @@ use fogbench::metrics::{
     expected_bias_stability, fit_noise, fit_pooled_noise, measure, overlapping_allan,
     overlapping_allan_at, welch,
 };
+use fogbench::signal::Rates;
 use fogbench::units;
 
 use crate::support::assert_close;
@@ -298,7 +299,7 @@ fn slow_noise_is_fitted_and_its_intervals_cover_the_truth() {
         let record = Record {
             channel_deg_per_h: &raw,
             raw_deg_per_h: &raw,
-            truth_deg_per_h: &zero,
+            truth_deg_per_h: Rates::Words(&zero),
             response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1.0,

@@ -6,6 +6,7 @@ use fogbench::metrics::catalogue::{ANGLE_RANDOM_WALK, QUANTISATION, RATE_RANDOM_
 use fogbench::metrics::{
     AllanOptions, ChannelMetrics, Motion, Record, Settings, measure, record_fit_tau_min_s,
 };
+use fogbench::signal::Rates;
 use rayon::prelude::*;
 use serde_json::Value;
 
@@ -79,7 +80,7 @@ impl Words {
         let record = Record {
             channel_deg_per_h: values,
             raw_deg_per_h: values,
-            truth_deg_per_h: &[],
+            truth_deg_per_h: Rates::UNKNOWN,
             response_deg_per_h: &[],
             encoder_rad: None,
             drift: None,
@@ -238,6 +239,33 @@ fn an_hour_at_10_hz_names_its_answer() {
         (20.0, Limit),
     ];
     check(&words, &at_rest, 50..52);
+}
+
+/// An hour just has the averaging times in which pulses of 5 arcsec at rest lose their phase: some records show
+/// the walk, others a limit. None takes the pulses for noise.
+#[test]
+fn pulses_on_the_border_are_recognised_whatever_they_answer() {
+    let words = Words {
+        rate_deg_per_h: 0.0,
+        per_second: 10,
+        seconds: 3600,
+    };
+    let seeds: Vec<u64> = (100..140).collect();
+    let found: Vec<(Option<Answer>, bool)> = seeds
+        .par_iter()
+        .map(|&seed| {
+            let metrics = words.measured(&words.counted(seed, 5.0));
+            let walk = metrics.metric(&ANGLE_RANDOM_WALK).ok();
+            let misses = walk
+                .is_some_and(|it| it.low > WALK_DEG_PER_SQRT_H || it.high < WALK_DEG_PER_SQRT_H);
+            (answer(&metrics, 5.0, &format!("seed {seed}")), misses)
+        })
+        .collect();
+    let of = |wanted: Option<Answer>| found.iter().filter(|it| it.0 == wanted).count();
+    let missed = found.iter().filter(|it| it.1).count();
+    assert!(of(Some(Curve)) > 0 && of(Some(Limit)) > 0, "{found:?}");
+    assert!(of(None) <= 2, "{found:?}");
+    assert!(missed <= 4, "{found:?}");
 }
 
 #[test]

@@ -239,6 +239,12 @@ fn clocks_of_a_fixed_point_filter_are_printed() {
         assert!(text.contains(part), "no `{part}` in:\n{text}");
     }
     assert!(!text.contains("Table 1"), "{text}");
+    let slow = "timing --number-format fixed --adder-latency 3 --multiplier-latency 4 --divider-latency 30";
+    let words: Vec<&str> = slow.split(' ').collect();
+    let text = stdout(&fogbench(folder.path(), &words));
+    // The same clocks that the clocked model and the Verilog take.
+    assert!(text.contains("stalled         352"), "{text}");
+    assert!(!text.contains("estimate"), "{text}");
 }
 
 #[test]

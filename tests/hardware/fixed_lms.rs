@@ -15,7 +15,7 @@ use fogbench::vocabulary::UpdateSign;
 
 use crate::support::fixed::{
     Draws, OVERFLOWS, ROUNDINGS, check_noticed, check_resets, check_rtl, export, for_each_seed,
-    has, pairs, run, simulate,
+    has, pairs, pipelined, run, simulate,
 };
 use crate::support::{code, fogbench, is_long_rtl, stderr, stdout, summary, write};
 
@@ -286,7 +286,10 @@ fn clocks_of_fixed_lms_are_those_of_the_floating_point_pipelines() {
         assert_eq!(usage.wake_up_clocks, 1);
         let by_state: u64 = usage.states.iter().map(|state| state.clocks).sum();
         assert_eq!(by_state, clocks, "{seed}");
-        assert_eq!(pipeline.stalled_clocks(9), clocks + 8 * divisions);
+        assert_eq!(
+            pipeline.stalled_clocks(pipelined(1, 1, 9)),
+            clocks + 8 * divisions
+        );
         let board = fixed_board_usage(pipeline);
         assert_eq!(board.clocks_per_sample, clocks, "{seed}");
         // One clock for the pair, one to wake the core up.

@@ -8,10 +8,11 @@ use fogbench::fpga::fixed::{
     CodePair, FixedConfig, FixedEngine as _, FixedPipeline as _, Format, Overflow, Rounding,
     SignalName, fixed_board_usage, fixed_usage,
 };
+use fogbench::fpga::timing::Units;
 
 use crate::support::fixed::{
     Draws, OVERFLOWS, ROUNDINGS, check_noticed, check_resets, check_rtl, export, for_each_seed,
-    has, pairs, run,
+    has, pairs, pipelined, run,
 };
 use crate::support::stimulus::samples;
 use crate::support::{is_long_rtl, repository};
@@ -267,9 +268,88 @@ fn clocks_of_fixed_point_are_counted_on_the_model() {
         assert_eq!(board.clocks_per_sample, usage.clocks_per_sample);
         // One clock for the pair, one to wake the core up.
         assert_eq!(board.latency_clocks, usage.latency_clocks + 2);
-        assert_eq!(config.stalled_clocks(1), usage.clocks_per_sample);
-        assert_eq!(config.stalled_clocks(9), usage.clocks_per_sample + 8 * p);
+        let with_divider = |clocks| config.stalled_clocks(pipelined(1, 1, clocks));
+        assert_eq!(with_divider(1), usage.clocks_per_sample);
+        assert_eq!(with_divider(9), usage.clocks_per_sample + 8 * p);
     }
+}
+
+/// A mix with units of drawn latencies, some of them of a clock.
+fn slow_mix(seed: u32) -> FixedRlsConfig {
+    let mut draws = Draws(u64::from(seed) << 24 | 5);
+    let mut clocks = |most: u32| match draws.below(4) {
+        0 => 1,
+        _ => u64::from(1 + draws.below(most)),
+    };
+    let units = pipelined(clocks(6), clocks(16), clocks(64));
+    mix(seed).with_units(units).expect("latencies in range")
+}
+
+#[test]
+fn slow_units_change_the_clocks_of_fixed_point_and_no_word() {
+    let mut chained = 0;
+    for seed in 0..60 {
+        let (quick, slow) = (mix(seed), slow_mix(seed));
+        chained += u32::from(slow.units().chain());
+        let pairs = pairs(&FixedConfig::Rls(quick), 40);
+        // The run holds every period and latency to the formulas.
+        let (words, memories) = run(&FixedConfig::Rls(slow), &pairs);
+        assert_eq!(
+            (words, memories),
+            run(&FixedConfig::Rls(quick), &pairs),
+            "{seed}"
+        );
+        let usage = fixed_usage(&slow);
+        assert_eq!(usage.clocks_per_sample, slow.stalled_clocks(slow.units()));
+        assert_eq!(usage.latency_clocks, slow.latency_clocks() as u64);
+        assert_eq!(
+            fixed_board_usage(&slow).clocks_per_sample,
+            usage.clocks_per_sample
+        );
+    }
+    assert!((1..60).contains(&chained));
+    for latency in [0, 1001] {
+        assert!(mix(0).with_units(pipelined(1, latency, 1)).is_err());
+    }
+}
+
+#[test]
+fn slow_fixed_point_units_leave_nothing_of_the_past_after_a_reset() {
+    let config = slow_mix(2);
+    let taps = config.tap_count();
+    assert_ne!(config.units(), Units::ONE_CLOCK);
+    check_resets(&FixedConfig::Rls(config), taps * taps + 2 * taps);
+}
+
+#[test]
+fn fixed_point_rtl_with_slow_units_has_the_words_and_clocks_of_the_model() {
+    if !has("iverilog") {
+        return;
+    }
+    let (mixes, count) = if is_long_rtl() { (40, 300) } else { (8, 12) };
+    for_each_seed(0..mixes, |seed| {
+        let config = FixedConfig::Rls(slow_mix(seed));
+        check_rtl(&export(&config, count, 10), &[]);
+    });
+    // A multiplier in one piece, in two, in pieces of a bit; a divider of a row a clock and of several; roundings
+    // in one step, two and three.
+    for_each_seed(0..4, |seed| {
+        let (add, mul, div) = [
+            ("2", "2", "4"),
+            ("3", "3", "5"),
+            ("4", "4", "60"),
+            ("5", "60", "100"),
+        ][seed as usize];
+        let latencies = [
+            ("ADD_LATENCY", add),
+            ("MUL_LATENCY", mul),
+            ("DIV_LATENCY", div),
+        ];
+        check_rtl(
+            &export(&FixedConfig::Rls(mix(seed + 6)), 12, 10),
+            &latencies,
+        );
+    });
 }
 
 #[test]

@@ -21,9 +21,10 @@ use fogbench::fpga::rls::{
     RlsConfig, RlsEngine, RlsLoad, RlsPipeline, RlsSettings, rls_stalled_clocks,
     rls_stalled_latency,
 };
-use fogbench::fpga::timing::{UnitTiming, Units, measure, sample_period_us};
+use fogbench::fpga::timing::{Units, measure, sample_period_us};
 use fogbench::vocabulary::{DesiredSignal, Division, OutputRegister, UnitSource, UpdateSign};
 
+use crate::support::fixed::pipelined;
 use crate::support::generated::generated;
 use crate::support::stimulus::{predictor_pairs, words};
 use crate::support::{code, fogbench, repository, stderr};
@@ -62,14 +63,6 @@ impl Draws {
     fn below(&mut self, bound: u64) -> u64 {
         (self.word() >> 8) % bound
     }
-}
-
-fn pipelined(adder: u64, multiplier: u64, divider: u64) -> Units {
-    let mut units = Units::ONE_CLOCK;
-    units.adder = UnitTiming::pipelined(adder);
-    units.multiplier = UnitTiming::pipelined(multiplier);
-    units.divider = UnitTiming::iterative(divider);
-    units
 }
 
 /// The numbers at which something changes, of both signs: zero, the ends of the subnormal numbers and

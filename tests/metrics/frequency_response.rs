@@ -10,6 +10,7 @@ use fogbench::random::Streams;
 use fogbench::scenario::{
     Fidelity, GyroConfig, MotionConfig, MultiSineConfig, ServoConfig, SiteConfig, TurntableConfig,
 };
+use fogbench::signal::Rates;
 use fogbench::turntable::Turntable;
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h};
 use fogbench::vocabulary::PhaseRule;
@@ -236,7 +237,7 @@ fn record<'a>(channel: &'a [f64], raw: &'a [f64], truth: &'a [f64]) -> Record<'a
     Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
-        truth_deg_per_h: truth,
+        truth_deg_per_h: Rates::Words(truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,

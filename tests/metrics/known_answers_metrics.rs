@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use fogbench::metrics::{
     ChannelMetrics, Motion, Record, SwingClock, aggregate, measure, noise_delay_bound, support,
 };
+use fogbench::signal::Rates;
 use fogbench::units;
 
 use crate::support::assert_close;
@@ -32,7 +33,7 @@ fn steady(seed: u64, samples: usize) -> [ChannelMetrics; 2] {
     let record = |channel| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
@@ -126,7 +127,7 @@ fn a_swing_record_is_measured_as_theory_says() {
     let record = |channel| Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
@@ -196,7 +197,7 @@ fn a_record_too_short_or_not_finite_gives_reasons_and_no_numbers() {
         let record = Record {
             channel_deg_per_h: &raw,
             raw_deg_per_h: &raw,
-            truth_deg_per_h: &raw,
+            truth_deg_per_h: Rates::Words(&raw),
             response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: PERIOD_S,
@@ -227,7 +228,7 @@ fn a_noise_free_record_has_no_noise_gain_and_no_false_numbers() {
     let record = Record {
         channel_deg_per_h: &raw,
         raw_deg_per_h: &raw,
-        truth_deg_per_h: &raw,
+        truth_deg_per_h: Rates::Words(&raw),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,

@@ -6,7 +6,7 @@ use fogbench::metrics::{
     AllanOptions, ChannelMetrics, MetricKey, Motion, Record, Settings, measure,
 };
 use fogbench::random::Streams;
-use fogbench::signal::SlowDrift;
+use fogbench::signal::{Rates, SlowDrift};
 
 use crate::support::assert_close;
 
@@ -59,7 +59,7 @@ fn measured_with(values: &[f64], period_s: f64, drift: Option<&SlowDrift>) -> Ch
     let record = Record {
         channel_deg_per_h: values,
         raw_deg_per_h: values,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: period_s,

@@ -6,6 +6,7 @@ use fogbench::metrics::{
     ChannelMetrics, FilterFacts, Motion, NoiseDelayBound, Record, Settings, known_metrics, measure,
     noise_delay_bound, support,
 };
+use fogbench::signal::Rates;
 
 use crate::support::assert_close;
 use crate::support::records::{
@@ -23,7 +24,7 @@ fn measured(
     let record = Record {
         channel_deg_per_h: channel,
         raw_deg_per_h: raw,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,
@@ -115,7 +116,7 @@ fn through_a_wandering_gain(deviation: f64) -> ChannelMetrics {
     let record = Record {
         channel_deg_per_h: &output,
         raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: 0.01,

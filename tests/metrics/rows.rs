@@ -13,7 +13,7 @@ use fogbench::metrics::{
     WarmRecord, aggregate, known_curves, known_metrics, measure, measure_temperature,
 };
 use fogbench::report::{Place, artefacts, curve_csv};
-use fogbench::signal::{FilterShape, WeightRule};
+use fogbench::signal::{FilterShape, Rates, WeightRule};
 
 use crate::support::records::{settings, white};
 use crate::support::{code, fogbench, repository, stderr, tree, write};
@@ -229,7 +229,7 @@ fn measured(case: &Case, seed: u64) -> [ChannelMetrics; 2] {
         let record = Record {
             channel_deg_per_h: channel,
             raw_deg_per_h: &raw,
-            truth_deg_per_h: &case.truth,
+            truth_deg_per_h: Rates::Words(&case.truth),
             response_deg_per_h: &[],
             encoder_rad: Some(&angles),
             sample_period_s: PERIOD_S,

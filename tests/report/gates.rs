@@ -12,7 +12,7 @@ use fogbench::report::{
     run_summary_json, suite_text, table_text, write_suite_summary,
 };
 use fogbench::scenario::{AssumedInShort, GateConfig, GateDecision, InconclusivePolicy, Scenario};
-use fogbench::signal::{GyroFacts, RunSignals, TheoryCurve, TheoryQuantity};
+use fogbench::signal::{GyroFacts, Rates, RunSignals, TheoryCurve, TheoryQuantity};
 
 fn gate(metric: &str, min: Option<f64>, max: Option<f64>) -> GateConfig {
     GateConfig {
@@ -376,7 +376,7 @@ fn pictures_of_a_long_record_are_small_and_repeat_to_the_byte() {
         sample_period_s: period_s,
         first_measured: 4000,
         prefix: "",
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         encoder_rad: None,
         input_digest: None,
         channels: vec![("raw", &raw), ("lms", &lms), ("rls", &raw), ("bad", &raw)],
@@ -406,7 +406,7 @@ fn quiet_signals(zeros: &[f64]) -> RunSignals<'_> {
         first_measured: 0,
         prefix: "",
         encoder_rad: None,
-        truth_deg_per_h: zeros,
+        truth_deg_per_h: Rates::Words(zeros),
         input_digest: None,
         channels: vec![("raw", zeros), ("lms", zeros)],
         temperature: None,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fogbench::experiment::{Plan, SuiteOptions, plan_suite, run_suite};
 use fogbench::metrics::{AllanOptions, Motion, Record, Settings, measure, predict};
 use fogbench::report::SVG_BYTES_MAX;
-use fogbench::signal::{FilterShape, WeightRule};
+use fogbench::signal::{FilterShape, Rates, WeightRule};
 use serde_json::Value;
 
 use crate::scenario::campaign::schema::{leaves, root};
@@ -473,7 +473,7 @@ fn measuring_words_whose_squares_overflow_ends_with_reasons() {
         let record = Record {
             channel_deg_per_h: &values,
             raw_deg_per_h: &values,
-            truth_deg_per_h: &truth,
+            truth_deg_per_h: Rates::Words(&truth),
             response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1e-3,

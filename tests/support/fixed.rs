@@ -5,6 +5,7 @@ use std::process::Command;
 
 use fogbench::fpga::export::{FixedExport, write_fixed_rtl};
 use fogbench::fpga::fixed::{CodePair, FixedConfig, Overflow, Rounding};
+use fogbench::fpga::timing::{UnitTiming, Units};
 use fogbench::vocabulary::{DesiredSignal, OutputRegister};
 
 use crate::support::is_ci;
@@ -12,6 +13,15 @@ use crate::support::is_ci;
 pub(crate) const ROUNDINGS: [Rounding; 3] =
     [Rounding::Truncate, Rounding::HalfUp, Rounding::NearestEven];
 pub(crate) const OVERFLOWS: [Overflow; 2] = [Overflow::Saturate, Overflow::Wrap];
+
+/// Units of these latencies: adder, multiplier, divider.
+pub(crate) fn pipelined(adder: u64, multiplier: u64, divider: u64) -> Units {
+    Units {
+        adder: UnitTiming::pipelined(adder),
+        multiplier: UnitTiming::pipelined(multiplier),
+        divider: UnitTiming::pipelined(divider),
+    }
+}
 
 /// A repeatable generator (Knuth's constants): upper bits of a 64-bit LCG.
 pub(crate) struct Draws(pub(crate) u64);

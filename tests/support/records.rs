@@ -6,7 +6,7 @@ use fogbench::metrics::{
     AllanOptions, Applies, ChannelMetrics, FilterFacts, Motion, Record, Settings, SwingClock,
 };
 use fogbench::random::Streams;
-use fogbench::signal::{FilterShape, WeightRule};
+use fogbench::signal::{FilterShape, Rates, WeightRule};
 
 /// Sample period of the gyro under test, s.
 pub(crate) const PERIOD_S: f64 = 64.0 * 3.916_576e-6;
@@ -87,7 +87,7 @@ pub(crate) fn raw_record<'a>(raw: &'a [f64], truth: &'a [f64]) -> Record<'a> {
     Record {
         channel_deg_per_h: raw,
         raw_deg_per_h: raw,
-        truth_deg_per_h: truth,
+        truth_deg_per_h: Rates::Words(truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,

@@ -16,6 +16,7 @@ fn what_reads_the_same_is_said() {
         "claim --arw-before 0.0060 --arw-after 0.0029",
         "claim --arw-before 0.03741 --arw-after 0.00976 --averaging-time-s 10 --rate-hz 100",
         "claim --bias-stability 0.05 0.02 --averaging-time-s 10",
+        "claim --arw-before 0.006 --arw-after 0.0059 --rate-hz 1",
         "claim --arw-before 0.006 --arw-after 0.006",
         "claim --bias-stability 0.02 0.05 --averaging-time-s 10 --format json",
         "claim --arw-before 0.006 --arw-after 0.0029 --rate-hz 4000 --format json",

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use fogbench::experiment::plan_suite;
 use fogbench::metrics::{ChannelMetrics, Motion, Record, SwingClock, fit_swing, measure};
 use fogbench::scenario::{EncoderConfig, MotionConfig, ServoConfig};
+use fogbench::signal::Rates;
 use fogbench::units::{deg_per_s_to_rad_per_s, rad_per_s_to_deg_per_h, rad_per_s_to_deg_per_s};
 
 use crate::support::records::{settings, value};
@@ -31,7 +32,7 @@ fn measured(encoder: EncoderConfig, frequency_hz: f64) -> ChannelMetrics {
     let record = Record {
         channel_deg_per_h: &gyro[4000..],
         raw_deg_per_h: &gyro[4000..],
-        truth_deg_per_h: &truth[4000..],
+        truth_deg_per_h: Rates::Words(&truth[4000..]),
         response_deg_per_h: &[],
         encoder_rad: Some(&angles[4000..]),
         sample_period_s: PERIOD_S,

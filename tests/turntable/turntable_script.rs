@@ -7,6 +7,7 @@ use fogbench::metrics::{
     AllanOptions, Applies, Motion, Record, Settings, known_metrics, measure, support,
 };
 use fogbench::scenario::{MotionConfig, Resolved, ScenarioError, load_suite, manifest_toml};
+use fogbench::signal::Rates;
 
 use crate::support::transcript::{Transcript, said_to_each};
 use crate::support::{assert_close, fogbench};
@@ -198,7 +199,7 @@ fn a_general_motion_has_means_and_tracking_error_and_reasons_for_the_rest() {
     let record = Record {
         channel_deg_per_h: &raw,
         raw_deg_per_h: &raw,
-        truth_deg_per_h: &truth,
+        truth_deg_per_h: Rates::Words(&truth),
         response_deg_per_h: &[],
         encoder_rad: None,
         sample_period_s: PERIOD_S,

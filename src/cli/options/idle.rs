@@ -170,12 +170,13 @@ fn of_timing(options: &TimingOptions, given: &ArgMatches) -> Vec<String> {
     let kind = options.filter.kind;
     let mut complaints = of_filter(&options.filter, given);
     if options.filter.number_format == WordFormat::Fixed {
-        // Nothing but its divider can be waited for.
-        const OF_FLOAT: [&str; 3] = ["adder_latency", "multiplier_latency", "initiation_interval"];
-        complaints.extend(of_fixed(given, &OF_FLOAT));
-        if kind == Kind::Rls {
-            complaints.extend(of_fixed(given, &["ram_ports"]));
-        }
+        complaints.extend(of_fixed(given, &["initiation_interval"]));
+        let idle: &[&str] = match kind {
+            Kind::Rls => &["ram_ports"],
+            // Nothing but their divider can be waited for.
+            _ => &["adder_latency", "multiplier_latency"],
+        };
+        complaints.extend(of_fixed(given, idle));
     }
     if kind != Kind::Rls && !typed(given, &["ram_ports"]).is_empty() {
         complaints.push(
@@ -221,14 +222,7 @@ fn of_export(options: &ExportOptions, given: &ArgMatches) -> Vec<String> {
     };
     let is_fixed = options.filter.number_format == WordFormat::Fixed;
     if options.name.is_none() && is_fixed {
-        let of_float = [
-            "units",
-            "synth",
-            "adder_latency",
-            "multiplier_latency",
-            "divider_latency",
-        ];
-        complaints.extend(of_fixed(given, &of_float));
+        complaints.extend(of_fixed(given, &["units"]));
     }
     let is_counted = !typed(given, &["samples"]).is_empty();
     if options.what == ExportForm::Waveform && is_counted && options.samples > options.trace_samples
@@ -380,19 +374,14 @@ mod tests {
     #[test]
     fn what_fixed_point_lacks_is_refused() {
         assert_idle(
-            "fogbench timing --number-format fixed --division elementwise --adder-latency 2 \
-             --multiplier-latency 2 --ram-ports 2",
-            &[
-                "--division",
-                "--adder-latency",
-                "--multiplier-latency",
-                "--ram-ports",
-            ],
+            "fogbench timing --number-format fixed --division elementwise --initiation-interval 2 \
+             --ram-ports 2",
+            &["--division", "--initiation-interval", "--ram-ports"],
             "--number-format fixed",
         );
         assert_idle(
-            "fogbench timing --number-format fixed --kind lms --adder-latency 2",
-            &["--adder-latency"],
+            "fogbench timing --number-format fixed --kind lms --adder-latency 2 --multiplier-latency 2",
+            &["--adder-latency", "--multiplier-latency"],
             "--number-format fixed",
         );
     }

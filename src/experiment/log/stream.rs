@@ -7,6 +7,7 @@ use crate::experiment::run::{GyroRecord, Progress, RecordLength};
 use crate::metrics::WordStream;
 use crate::recording::{LogError, LogStream};
 use crate::scenario::motion_of_log;
+use crate::signal::RateRecord;
 use crate::wording::counted;
 
 /// Measures a log while it comes in.
@@ -73,7 +74,7 @@ pub fn try_log_stream(
         filters: Vec::new(),
         log,
         record: GyroRecord {
-            truth_deg_per_h: Vec::new(),
+            truth_deg_per_h: RateRecord::default(),
             response_deg_per_h: None,
             raw_deg_per_h: Vec::new(),
             compensated_deg_per_h: None,

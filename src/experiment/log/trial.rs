@@ -135,7 +135,7 @@ pub fn try_log(
     notes.splice(0..0, log.notes());
     log.take_about_common_mean();
     let record = GyroRecord {
-        truth_deg_per_h: std::mem::take(&mut log.reference_deg_per_h),
+        truth_deg_per_h: std::mem::take(&mut log.reference_deg_per_h).into(),
         response_deg_per_h: None,
         raw_deg_per_h: std::mem::take(&mut log.rate_deg_per_h),
         compensated_deg_per_h: compensated,
@@ -144,7 +144,7 @@ pub fn try_log(
     let finished = run(filters, &input, progress);
     let finished = finished.map_err(|unfinished| LogTrialError::of(&log, unfinished))?;
     let measured = &record.raw_deg_per_h[length.warm_up..];
-    let reference = record.truth_deg_per_h.get(length.warm_up..);
+    let reference = record.truth_deg_per_h.words().get(length.warm_up..);
     let motion = metric_motion(settings, reference.unwrap_or_default(), sample_period_s);
     let motion = motion.map_err(|reason| LogTrialError::of(&log, reason))?;
     let metric_settings = Settings {

@@ -115,7 +115,7 @@ impl LogTrial {
             sample_period_s: self.log.sample_period_s(),
             first_measured: self.length.warm_up,
             prefix: "",
-            truth_deg_per_h: &self.record.truth_deg_per_h,
+            truth_deg_per_h: self.record.truth_deg_per_h.rates(),
             encoder_rad: None,
             input_digest: (!self.filters.is_empty())
                 .then(|| digest_of_words(self.record.filter_input_deg_per_h())),

@@ -10,7 +10,7 @@ use crate::experiment::plan::Plan;
 use crate::gate::{Verdict, expects_failure};
 use crate::metrics::ChannelMetrics;
 use crate::scenario::ScenarioErrors;
-use crate::signal::{CalibrationSheet, TheoryCurve};
+use crate::signal::{CalibrationSheet, RateRecord, TheoryCurve};
 
 /// Why a scenario gives no run.
 #[derive(Debug, thiserror::Error)]
@@ -105,13 +105,18 @@ impl Run {
     /// # Errors
     /// [`UnknownName`] with the records there are: a filter that failed has none.
     pub fn samples(&self, name: &str) -> Result<Samples<'_>, UnknownName> {
-        let records = self.records();
+        let (records, truths) = (self.records(), self.truths());
         let found = records.iter().find(|(known, _)| known == name);
+        let found = found.map(|(_, words)| *words).or_else(|| {
+            let truth = truths.iter().find(|(known, _)| known == name);
+            truth.map(|(_, rates)| rates.words())
+        });
         match found {
-            Some((_, values)) => Ok(self.stamped(values, "deg/h")),
+            Some(values) => Ok(self.stamped(values, "deg/h")),
             None => {
                 let names = records.iter().map(|(known, _)| known.as_str());
-                Err(UnknownName::new("record", name, names))
+                let truths = truths.iter().map(|(known, _)| known.as_str());
+                Err(UnknownName::new("record", name, names.chain(truths)))
             }
         }
     }
@@ -157,7 +162,17 @@ impl Run {
         &self.results.theory
     }
 
-    /// Every record by name.
+    /// The true rates by name.
+    fn truths(&self) -> Vec<(String, &RateRecord)> {
+        let prefixes = self.plan.resolved().scenario.axis_prefixes();
+        let truths = prefixes.iter().map(|prefix| format!("{prefix}truth"));
+        let gyros = self.results.simulation.gyros.iter();
+        truths
+            .zip(gyros.map(|record| &record.truth_deg_per_h))
+            .collect()
+    }
+
+    /// Every channel's words by name.
     fn records(&self) -> Vec<(String, &[f64])> {
         let scenario = &self.plan.resolved().scenario;
         let simulation = &self.results.simulation;
@@ -166,8 +181,6 @@ impl Run {
             let records = names.into_iter().zip(gyros);
             records.filter_map(move |(name, record)| Some((name, words(record)?)))
         };
-        let prefixes = scenario.axis_prefixes();
-        let truths = prefixes.iter().map(|prefix| format!("{prefix}truth"));
         let filters = simulation.filters.iter().filter_map(|(_, filter)| {
             let words = filter.words.as_ref().ok()?;
             Some((filter.name.clone(), words.output_deg_per_h.as_slice()))
@@ -179,9 +192,6 @@ impl Run {
             record.compensated_deg_per_h.as_deref()
         }))
         .chain(filters)
-        .chain(named(truths.collect(), |record| {
-            Some(&record.truth_deg_per_h)
-        }))
         .collect()
     }
 

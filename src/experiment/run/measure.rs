@@ -153,7 +153,7 @@ impl Cut<'_> {
             channel_deg_per_h: &channel_deg_per_h[first..],
             raw_deg_per_h: &input_deg_per_h[first..],
             // A recorded log has none.
-            truth_deg_per_h: self.record.truth_deg_per_h.get(first..).unwrap_or(&[]),
+            truth_deg_per_h: self.record.truth_deg_per_h.rates().from(first),
             response_deg_per_h: self.record.response_deg_per_h.as_deref().unwrap_or(&[]),
             encoder_rad: self.encoder_rad.map(|readings| &readings[first..]),
             sample_period_s: self.sample_period_s,
@@ -184,12 +184,11 @@ impl Cut<'_> {
     fn motion(&self) -> Option<&[f64]> {
         let of_record = || {
             let record = self.record;
-            let truth = &record.truth_deg_per_h;
-            let moves = truth
-                .windows(2)
-                .any(|two| two[0] < two[1] || two[1] < two[0]);
+            let truth = record.truth_deg_per_h.rates();
             let response = record.response_deg_per_h.as_deref();
-            moves.then(|| known_motion(record.filter_input_deg_per_h(), response, truth))
+            let of_words =
+                || known_motion(record.filter_input_deg_per_h(), response, &truth.words());
+            truth.changes().then(of_words)
         };
         self.motion.get_or_init(of_record).as_deref()
     }

@@ -102,7 +102,7 @@ fn mean_true_rates(plan: &Plan, simulation: &Simulation) -> [f64; 3] {
     let first = RecordLength::new(scenario, plan.sample_period_s()).warm_up;
     let mut means = [0.0; 3];
     for (mean, gyro) in means.iter_mut().zip(&simulation.gyros) {
-        let truth = &gyro.truth_deg_per_h[first..];
+        let truth = gyro.truth_deg_per_h.rates().from(first);
         *mean = truth.iter().sum::<f64>() / count(truth.len());
     }
     means

@@ -12,7 +12,7 @@ use crate::filters::FilterKind;
 use crate::gyro::{self, CaseGyro, Gyro, GyroError, LoopFaults};
 use crate::random::Streams;
 use crate::scenario::{FilterState, Scenario};
-use crate::signal::{MotionSegment, cubics_per_word};
+use crate::signal::{MotionSegment, RateRecord, cubics_per_word};
 use crate::turntable::{
     InjectedSignal, MotionClass, ServoConfig, Turntable, first_measured_index, step_indices,
 };
@@ -38,7 +38,7 @@ pub(crate) struct Simulation {
 pub(crate) struct GyroRecord {
     /// Inertial rate of the input axis, or of the case axis of an assembly, at each stamp, with the
     /// rate that an injected signal equals, deg/h; empty for a recorded log.
-    pub(crate) truth_deg_per_h: Vec<f64>,
+    pub(crate) truth_deg_per_h: RateRecord,
     /// What the gyro makes of the motion without noise at each stamp, deg/h; absent where nothing moves,
     /// of an assembly and of a recorded log.
     pub(crate) response_deg_per_h: Option<Vec<f64>>,
@@ -257,7 +257,7 @@ struct Source {
     /// The answer of a single gyro to the motion.
     response: Option<Response>,
     /// Of each gyro.
-    truth_deg_per_h: Vec<Vec<f64>>,
+    truth_deg_per_h: Vec<RateRecord>,
     encoder_rad: Option<Vec<f64>>,
     samples: usize,
 }
@@ -348,7 +348,7 @@ impl Source {
             truth_deg_per_h: scenario
                 .axis_prefixes()
                 .iter()
-                .map(|_| Vec::with_capacity(length.total()))
+                .map(|_| RateRecord::with_capacity(length.total()))
                 .collect(),
             samples: length.total(),
         })

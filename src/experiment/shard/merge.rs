@@ -17,7 +17,7 @@ use crate::experiment::suite::{
 };
 use crate::gyro::temperature_record;
 use crate::report::RunReport;
-use crate::signal::RunSignals;
+use crate::signal::{Rates, RunSignals};
 use crate::store::StoreError;
 
 /// Writes what `run_suite` writes of some plans, from the results that shards of their list hold, and starts
@@ -187,7 +187,7 @@ fn signals<'a>(plan: &'a Plan, first: &'a FirstRepeat) -> Vec<RunSignals<'a>> {
             sample_period_s,
             first_measured: RecordLength::new(scenario, sample_period_s).warm_up,
             prefix,
-            truth_deg_per_h: &gyro.truth_deg_per_h,
+            truth_deg_per_h: Rates::Words(&gyro.truth_deg_per_h),
             encoder_rad: first.encoder_rad.as_deref(),
             // Of samples that are written, which those of several repeats are not.
             input_digest: None,

@@ -60,7 +60,7 @@ impl FirstRepeat {
             let channels = signals.channels.iter();
             let channels = channels.map(|(name, words)| ((*name).to_owned(), words.to_vec()));
             FirstGyro {
-                truth_deg_per_h: signals.truth_deg_per_h.to_vec(),
+                truth_deg_per_h: signals.truth_deg_per_h.words().into_owned(),
                 channels: channels.collect(),
             }
         });

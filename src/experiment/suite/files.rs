@@ -122,7 +122,7 @@ pub(crate) fn signals<'a>(
             sample_period_s,
             first_measured,
             prefix,
-            truth_deg_per_h: &record.truth_deg_per_h,
+            truth_deg_per_h: record.truth_deg_per_h.rates(),
             encoder_rad: simulation.encoder_rad.as_deref(),
             input_digest: has_digest.then(|| digest_of_words(record.filter_input_deg_per_h())),
             channels: std::iter::once(raw)

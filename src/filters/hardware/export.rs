@@ -7,8 +7,8 @@ use super::pipeline::PipelineSettings;
 use super::settings::{FloatSettings, with_word};
 use crate::fpga::FpgaError;
 use crate::fpga::export::{
-    ExportSettings, FixedExport, IntegerCodes, RtlParts, TopLevel, stimulus_pairs, write_fixed_rtl,
-    write_fixed_vectors, write_rtl_parts, write_vectors, write_waveform,
+    ExportSettings, FixedExport, IntegerCodes, RtlParts, TopLevel, stimulus_pairs,
+    write_fixed_rtl_for, write_fixed_vectors, write_rtl_parts, write_vectors, write_waveform,
 };
 use crate::fpga::float_unit::Fp;
 use crate::fpga::timing::Units;
@@ -72,9 +72,8 @@ pub fn export_pipeline_of(
         PipelineSettings::Float(settings) => with_word!(settings.format, F => {
             export::<F>(folder, form, settings, stimulus, trace_samples, parts)
         }),
-        PipelineSettings::Fixed(_) if parts.rtl != RtlParts::PLAIN => Err(FpgaError::FixedUnits),
         PipelineSettings::Fixed(settings) => {
-            export_fixed(folder, form, settings, &stimulus, trace_samples)
+            export_fixed(folder, form, settings, &stimulus, trace_samples, parts)
         }
     }
 }
@@ -124,6 +123,7 @@ fn export_fixed(
     settings: &FixedSettings,
     stimulus: &Stimulus,
     trace_samples: usize,
+    parts: HardwareParts,
 ) -> Result<Vec<PathBuf>, FpgaError> {
     let mut numbered = stimulus.words.iter().enumerate();
     if let Some((index, value)) = numbered.find(|(_, word)| !word.is_finite()) {
@@ -133,7 +133,7 @@ fn export_fixed(
             format: "fixed point",
         });
     }
-    let config = settings.config()?;
+    let config = settings.config()?.with_units(parts.latencies)?;
     let format = config.as_pipeline().tap_formats().desired;
     let full_scale = settings.full_scale_deg_per_h;
     let words = stimulus.words.iter();
@@ -151,7 +151,7 @@ fn export_fixed(
     };
     match form {
         ExportForm::Vectors => write_fixed_vectors(folder, &export),
-        ExportForm::Rtl => write_fixed_rtl(folder, &export),
+        ExportForm::Rtl => write_fixed_rtl_for(folder, &export, parts.rtl.device),
         ExportForm::Waveform => Err(FpgaError::FixedWaveform),
     }
 }

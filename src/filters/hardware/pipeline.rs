@@ -138,8 +138,7 @@ impl PipelineSettings {
         }
     }
 
-    /// Clocks per sample when the control machine waits for every result of these units; in fixed point
-    /// the divider alone can be waited for.
+    /// Clocks per sample when the control machine waits for every result of these units.
     ///
     /// # Errors
     /// [`FpgaError::TapCount`], [`FpgaError::CountOutOfRange`].
@@ -149,8 +148,7 @@ impl PipelineSettings {
             Self::Fixed(settings) => {
                 units.check()?;
                 let config = settings.config()?;
-                let divider_clocks = units.divider.latency_clocks;
-                Ok(config.as_pipeline().stalled_clocks(divider_clocks))
+                Ok(config.as_pipeline().stalled_clocks(units))
             }
         }
     }
@@ -162,8 +160,7 @@ impl PipelineSettings {
     pub fn check_units(&self, units: Units) -> Result<(), FpgaError> {
         match self {
             Self::Float(settings) => settings.core.config_with::<f64>(units).map(drop),
-            Self::Fixed(_) if units == Units::ONE_CLOCK => Ok(()),
-            Self::Fixed(_) => Err(FpgaError::FixedUnits),
+            Self::Fixed(settings) => settings.config()?.with_units(units).map(drop),
         }
     }
 

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use super::axis::{self, StreamPorts};
 use super::fixed_params::{fixed_json, fixed_macros};
 use super::fixed_top::fixed_top_verilog;
+use super::params::unit_latencies;
+use super::rtl::synthesis;
 use super::top::TOP_SAMPLES;
 use super::vectors::write_text;
 use crate::fpga::error::FpgaError;
@@ -14,7 +16,7 @@ use crate::fpga::fixed::{
     CodePair, FixedClock, FixedClocked, FixedConfig, FixedFrontEnd, FixedKind, PortAccess,
     SignalName,
 };
-use crate::vocabulary::{DesiredSignal, OutputRegister};
+use crate::vocabulary::{DesiredSignal, Device, OutputRegister};
 
 /// Testbench of every fixed-point core, which goes under the name of its kind.
 const BENCH: &str = include_str!("rtl/tb_fixed.v");
@@ -23,8 +25,9 @@ const BENCH: &str = include_str!("rtl/tb_fixed.v");
 const README: &str = include_str!("rtl/README_fixed.txt");
 
 /// Files of the RTL of every kind beside those of the export itself.
-const SOURCES: [(&str, &str); 6] = [
+const SOURCES: [(&str, &str); 7] = [
     ("fx.v", include_str!("rtl/fx.v")),
+    ("fp_wait.v", include_str!("rtl/fp_wait.v")),
     ("sp_ram.v", include_str!("rtl/sp_ram.v")),
     ("fx_front_end.v", include_str!("rtl/fx_front_end.v")),
     ("top_bench.v", include_str!("rtl/top_bench.v")),
@@ -122,8 +125,7 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
     let declared = export.config.as_pipeline();
     let mut pipeline = declared.clocked();
     let before = hex_lines(&pipeline.memories().concat());
-    let traced = export.trace_samples.min(pairs.len()) * declared.clocks_per_sample();
-    let (outputs, trace, rows) = simulate(pipeline.as_mut(), &pairs, traced);
+    let (outputs, trace, rows) = simulate(pipeline.as_mut(), &pairs, export.trace_samples);
     let words: Vec<i64> = pairs
         .iter()
         .flat_map(|pair| [pair.input, pair.desired])
@@ -152,6 +154,18 @@ pub fn write_fixed_vectors(dir: &Path, export: &FixedExport) -> Result<Vec<PathB
 /// # Errors
 /// As [`write_fixed_vectors`].
 pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>, FpgaError> {
+    write_fixed_rtl_for(dir, export, None)
+}
+
+/// [`write_fixed_rtl`] with a script for synthesis where a device is named.
+///
+/// # Errors
+/// As [`write_fixed_vectors`].
+pub fn write_fixed_rtl_for(
+    dir: &Path,
+    export: &FixedExport,
+    device: Option<Device>,
+) -> Result<Vec<PathBuf>, FpgaError> {
     let mut files = write_fixed_vectors(dir, export)?;
     let kind = export.config.as_pipeline().kind();
     for (name, text) in SOURCES.iter().chain(&axis::SOURCES).chain(kind.sources) {
@@ -161,8 +175,15 @@ pub fn write_fixed_rtl(dir: &Path, export: &FixedExport) -> Result<Vec<PathBuf>,
     let ports = StreamPorts {
         kind: kind.name,
         bits: [formats.desired.width(), formats.output.width()],
-        latencies: [1; 3],
+        latencies: unit_latencies(export.config.as_pipeline().units()).map(|(_, clocks)| clocks),
     };
+    if let Some(device) = device {
+        let own = kind.sources.iter().map(|(name, _)| *name);
+        let files_of_top = own.chain(["fx_front_end.v", "fx.v", "sp_ram.v", "fp_wait.v"]);
+        let sources: Vec<&str> = files_of_top.collect();
+        let text = synthesis(kind.name, device, &sources.join(" "));
+        files.push(write_text(dir, "synth.sh", &text)?);
+    }
     for (name, text) in [
         (ports.file(), ports.verilog()),
         ("README.txt".to_owned(), readme(kind)),
@@ -193,7 +214,8 @@ fn readme(kind: &FixedKind) -> String {
         .replace("{states}", &codes)
 }
 
-/// Runs the pairs back to back; outputs, at most `traced` rows of the trace and their number.
+/// Runs the pairs back to back; outputs, the trace of the first `traced` samples and the number of its rows.
+/// A step of several clocks is a row, that of its last clock.
 fn simulate(
     pipeline: &mut dyn FixedClocked,
     pairs: &[CodePair],
@@ -206,7 +228,7 @@ fn simulate(
         let clock = pipeline.tick(pairs.get(next).copied());
         next += usize::from(clock.accepted);
         outputs.extend(clock.output);
-        if !was_idle && rows < traced {
+        if !was_idle && !clock.waits && next <= traced {
             write_row(&mut trace, &clock);
             rows += 1;
         }

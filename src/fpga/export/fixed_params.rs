@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::fixed::FixedExport;
-use super::params::clock_ps;
-use crate::fpga::fixed::{Format, fixed_board_usage, fixed_clearing_clocks};
+use super::params::{clock_ps, unit_latencies};
+use crate::fpga::fixed::{FixedPipeline, Format, fixed_board_usage, fixed_clearing_clocks};
 use crate::vocabulary::{OutputRegister, Overflow, Rounding};
 
 /// Verilog macros of the testbenches; the core's parameters all in one.
@@ -63,6 +63,32 @@ pub(super) fn fixed_macros(export: &FixedExport, rows: usize) -> String {
     define("TOP_PERIOD", &board.clocks_per_sample.to_string());
     define("TOP_SAMPLE_BITS", &formats.desired.width().to_string());
     define("TOP_RESULT_BITS", &formats.output.width().to_string());
+    text.push_str(&unit_macros(pipeline));
+    text
+}
+
+/// Macros of the units: whether R is multiplied by 1/alpha, and in steps of its own; latencies, over which those
+/// given to run.sh win.
+fn unit_macros(pipeline: &dyn FixedPipeline) -> String {
+    let mut text = String::new();
+    let core = pipeline.parameters().core;
+    let scales = core
+        .iter()
+        .any(|(name, value)| *name == "SCALES" && value == "1");
+    for (name, holds) in [("SPLIT", pipeline.splits()), ("SCALES", scales)] {
+        if holds {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "`define VEC_{name} 1");
+        }
+    }
+    if pipeline.units().wait() {
+        for (name, clocks) in unit_latencies(pipeline.units()) {
+            let _ = writeln!(
+                text,
+                "`ifndef VEC_{name}\n`define VEC_{name} {clocks}\n`endif"
+            );
+        }
+    }
     text
 }
 

@@ -2,7 +2,8 @@
 
 use super::fixed::FixedExport;
 use super::fixed_params::{core_parameters, format_parameters};
-use super::top::{TOP_HEAD, output_register};
+use super::params::unit_latencies;
+use super::top::{TOP_HEAD, latencies_of_core, output_register};
 use crate::fpga::fixed::TapFormats;
 use crate::vocabulary::DesiredSignal;
 
@@ -16,14 +17,22 @@ pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
         ..
     } = pipeline.tap_formats();
     let kind = pipeline.kind().name;
+    let [(_, add), (_, mul), (_, div)] = unit_latencies(pipeline.units());
+    let sources = pipeline.kind().sources;
+    let own = sources.iter().map(|(_, text)| latencies_of_core(text));
+    let waits = own.max_by_key(|text| text.len()).unwrap_or_default();
+    let comment = if waits.is_empty() {
+        "    // Adder and multiplier take one clock; a bench of any filter may say so.\n"
+    } else {
+        ""
+    };
     let sample_bits = desired.width() - 1;
     let result_bits = output.width() - 1;
     let means = export.desired == DesiredSignal::TwoSampleMean;
     format!(
-        "{TOP_HEAD}module {kind}_top #(\n    \
-         // Adder and multiplier take one clock; a bench of any filter may say so.\n    \
-         parameter ADD_LATENCY = 1,\n    parameter MUL_LATENCY = 1,\n    \
-         parameter DIV_LATENCY = 1       // clocks of the divider\n) (\n    \
+        "{TOP_HEAD}module {kind}_top #(\n{comment}    \
+         parameter ADD_LATENCY = {add},\n    parameter MUL_LATENCY = {mul},\n    \
+         parameter DIV_LATENCY = {div}       // clocks of the divider\n) (\n    \
          input  wire        clk,\n    input  wire        rst,\n    \
          input  wire        sample_valid,\n    output wire        sample_ready,\n    \
          input  wire [{sample_bits}:0] sample,         // Q{}.{} of {}\n    \
@@ -37,7 +46,7 @@ pub(super) fn fixed_top_verilog(export: &FixedExport) -> String {
          fx_front_end #(\n        {},\n        {},\n        .LAG({}), .MEAN({})\n    ) front (\n        \
          .clk(clk), .rst(rst), .valid(sample_valid), .ready(sample_ready), .sample(sample),\n        \
          .pair_valid(pair_valid), .pair_ready(pair_ready), .x(x), .d(d), .overflow(front_overflow));\n\n    \
-         {kind}_core #(\n        {},\n        .DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
+         {kind}_core #(\n        {},\n        {waits}.DIV_LATENCY(DIV_LATENCY)\n    ) core (\n        \
          .clk(clk), .rst(rst), .in_valid(pair_valid), .in_ready(pair_ready), .x(x), .d(d),\n        \
          .out_valid(core_valid), .y(y), .overflow(core_overflow), .indefinite(indefinite));\n\n    \
          assign nan      = 1'b0;\n    assign overflow = front_overflow | core_overflow;\n\n{}endmodule\n\n`default_nettype wire\n",

@@ -34,7 +34,7 @@ mod vectors;
 mod waveform;
 
 pub use super::kinds::PipelineConfig;
-pub use fixed::{FixedExport, write_fixed_rtl, write_fixed_vectors};
+pub use fixed::{FixedExport, write_fixed_rtl, write_fixed_rtl_for, write_fixed_vectors};
 pub use rtl::{RtlParts, write_rtl, write_rtl_parts};
 pub use vectors::{ExportSettings, IntegerCodes, TopLevel, stimulus_pairs, write_vectors};
 pub use waveform::write_waveform;

@@ -30,7 +30,7 @@ const BEHAVIOURAL: (&str, &str) = ("fp_sim.v", include_str!("rtl/fp_sim.v"));
 const SYNTHESIZABLE: (&str, &str) = ("fp_units.v", include_str!("rtl/fp_units.v"));
 
 /// Script of the synthesis, its places still open.
-const SYNTHESIS: (&str, &str) = ("synth.sh", include_str!("rtl/synth.sh"));
+const SYNTHESIS: &str = include_str!("rtl/synth.sh");
 
 /// What an export of RTL may have or leave out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,21 +104,33 @@ pub fn write_rtl_parts<F: Fp>(
             files.push(write_text(dir, TOP_SAMPLES, &text)?);
         }
         if let Some(device) = parts.device {
-            let (script, text) = SYNTHESIS;
-            let text = synthesis(text, kind.name, device, units.0);
-            files.push(write_text(dir, script, &text)?);
+            let name = kind.name;
+            let sources = format!(
+                "front_end.v {name}_core.v {name}_ctrl.v sp_ram.v fp_wait.v {}",
+                units.0
+            );
+            let text = synthesis(name, device, &sources);
+            files.push(write_text(dir, "synth.sh", &text)?);
         }
     }
     Ok(files)
 }
 
 /// Script of the synthesis of a kind's top level for a device.
+<<<<<<< HEAD
+///
+/// * `sources`: files of the RTL beside that of the top level.
+pub(super) fn synthesis(kind: &str, device: Device, sources: &str) -> String {
+    let sources = format!("{kind}_top.v {sources}");
+=======
 fn synthesis(text: &str, kind: &str, device: Device, units: &str) -> String {
     let sources = format!(
         "{kind}_top.v front_end.v {kind}_core.v {kind}_ctrl.v den_check.v sp_ram.v fp_wait.v {units}"
     );
+>>>>>>> proof
     let ports = format!("{kind}_axis.v axi_stream.v");
-    text.replace("@DEVICE@", device.word())
+    SYNTHESIS
+        .replace("@DEVICE@", device.word())
         .replace("@KIND@", kind)
         .replace("@PORTS@", &ports)
         .replace("@SOURCES@", &sources)

@@ -127,7 +127,7 @@ pub(super) fn output_register(register: OutputRegister, width: u32) -> String {
 }
 
 /// Latencies that the Verilog of a core takes beside its divider's.
-fn latencies_of_core(core: &str) -> &'static str {
+pub(super) fn latencies_of_core(core: &str) -> &'static str {
     if core.contains(" ADD_LATENCY ") {
         ".ADD_LATENCY(ADD_LATENCY), .MUL_LATENCY(MUL_LATENCY),\n        "
     } else {

@@ -4,6 +4,7 @@
 //! seen. Products and sums are exact, in 128 bits.
 
 use crate::fpga::memory::SinglePortRam;
+use crate::fpga::timing::{UnitTiming, Units};
 
 /// Use of a memory port in a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,12 +28,23 @@ pub struct UnitUse {
     pub quotients: u8,
 }
 
+impl UnitUse {
+    /// Clocks of the slowest unit in use, one if none is.
+    pub(super) fn clocks(self, units: Units) -> u64 {
+        let of = |uses: u8, unit: UnitTiming| if uses > 0 { unit.latency_clocks } else { 1 };
+        let both = of(self.products, units.multiplier).max(of(self.sums, units.adder));
+        both.max(of(self.quotients, units.divider))
+    }
+}
+
 /// RAMA, RAMB and what was used of them and of the units.
 #[derive(Debug)]
 pub struct FixedDatapath<'a> {
     rama: &'a mut SinglePortRam<i64>,
     ramb: &'a mut SinglePortRam<i64>,
     ports: [PortAccess; 2],
+    /// Words that stood where the memories are written.
+    replaced: [i64; 2],
     units: UnitUse,
 }
 
@@ -42,6 +54,7 @@ impl<'a> FixedDatapath<'a> {
             rama,
             ramb,
             ports: [PortAccess::default(); 2],
+            replaced: [0; 2],
             units: UnitUse::default(),
         }
     }
@@ -49,6 +62,18 @@ impl<'a> FixedDatapath<'a> {
     /// Ports, RAMA first, and units in use so far.
     pub(super) fn used(&self) -> ([PortAccess; 2], UnitUse) {
         (self.ports, self.units)
+    }
+
+    /// Frees the ports and puts back what stood where the memories were written; the units in use.
+    pub(super) fn undo(self) -> UnitUse {
+        let memories = [self.rama, self.ramb];
+        for ((memory, port), word) in memories.into_iter().zip(self.ports).zip(self.replaced) {
+            memory.edge();
+            if port.write.is_some() {
+                memory.preload(port.address, word);
+            }
+        }
+        self.units
     }
 
     /// The word at `address` of RAMA.
@@ -66,12 +91,14 @@ impl<'a> FixedDatapath<'a> {
     /// Writes `word` to `address` of RAMA.
     pub fn write_a(&mut self, address: usize, word: i64) {
         self.ports[0] = write_of(address, word);
+        self.replaced[0] = self.rama.words()[address];
         self.rama.write(address, word);
     }
 
     /// Writes `word` to `address` of RAMB.
     pub fn write_b(&mut self, address: usize, word: i64) {
         self.ports[1] = write_of(address, word);
+        self.replaced[1] = self.ramb.words()[address];
         self.ramb.write(address, word);
     }
 

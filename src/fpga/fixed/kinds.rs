@@ -6,6 +6,7 @@ use super::rls::{FixedRlsConfig, FixedRlsSettings, RLS_FIXED};
 use super::sign_lms::{FixedSignLmsConfig, FixedSignLmsSettings, SIGN_LMS_FIXED};
 use super::signal::Signal;
 use crate::fpga::error::FpgaError;
+use crate::fpga::timing::Units;
 
 /// Declares the kinds: what each shares, its settings and its constants.
 macro_rules! kinds {
@@ -80,4 +81,19 @@ kinds! {
     Lms: LMS_FIXED, FixedLmsSettings, FixedLmsConfig;
     /// Line enhancer, by the sign of the error or normalised.
     SignLms: SIGN_LMS_FIXED, FixedSignLmsSettings, FixedSignLmsConfig;
+}
+
+impl FixedConfig {
+    /// The same with units of other latencies: same words, more clocks.
+    ///
+    /// # Errors
+    /// [`FpgaError::CountOutOfRange`] for a latency out of range; [`FpgaError::FixedUnits`] for one of more than
+    /// a clock in a kind whose units take a clock each.
+    pub fn with_units(self, units: Units) -> Result<Self, FpgaError> {
+        match self {
+            Self::Rls(config) => config.with_units(units).map(Self::Rls),
+            Self::Lms(_) | Self::SignLms(_) if units.wait() => Err(FpgaError::FixedUnits),
+            Self::Lms(_) | Self::SignLms(_) => Ok(self),
+        }
+    }
 }

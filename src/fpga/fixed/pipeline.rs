@@ -8,6 +8,7 @@ use super::format::Format;
 use super::sequencer::FixedClocked;
 use super::signal::{Overflows, Signal};
 use super::taps::TapFormats;
+use crate::fpga::timing::Units;
 
 /// What is the same for all fixed-point pipelines of a kind.
 #[derive(Debug, PartialEq)]
@@ -75,9 +76,21 @@ pub trait FixedPipeline {
     /// The clock-less engine in the same state.
     fn engine(&self) -> Box<dyn FixedEngine + Send>;
 
-    /// Clocks from one accepted sample to the next with a divider of `divider_clocks`, 1 or more.
-    fn stalled_clocks(&self, divider_clocks: u64) -> u64 {
-        self.clocks_per_sample() as u64 + self.divisions() as u64 * (divider_clocks - 1)
+    /// Latencies of the units.
+    fn units(&self) -> Units {
+        Units::ONE_CLOCK
+    }
+
+    /// Whether the subtraction from R, its product with 1/alpha and the rounding of that have a step each.
+    fn splits(&self) -> bool {
+        false
+    }
+
+    /// Clocks from one accepted sample to the next with units of these latencies; of a pipeline with units
+    /// of a clock only, with such a divider.
+    fn stalled_clocks(&self, units: Units) -> u64 {
+        let longer = units.divider.latency_clocks - 1;
+        self.clocks_per_sample() as u64 + self.divisions() as u64 * longer
     }
 }
 

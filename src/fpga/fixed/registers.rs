@@ -17,6 +17,8 @@ pub struct FixedRegisters<S> {
     pub j: usize,
     /// Second clock of a state that has two kinds of them.
     pub second: bool,
+    /// Third one.
+    pub third: bool,
     /// Ring slot HEAD of the newest regressor word.
     pub head: usize,
     /// Product P, exact.
@@ -48,6 +50,7 @@ impl<S: ControlState> FixedRegisters<S> {
             i: 0,
             j: 0,
             second: false,
+            third: false,
             head: tap_count - 1,
             product: 0,
             accumulator: 0,
@@ -68,6 +71,7 @@ impl<S: ControlState> FixedRegisters<S> {
             i: self.i,
             j: self.j,
             second: self.second,
+            third: self.third,
             head: self.head,
             product: self.product,
             accumulator: self.accumulator,

@@ -1,13 +1,15 @@
 //! One sequencer under every fixed-point pipeline: memories, clock edge, strobes.
 //!
-//! The ports and the handshake are those of [`crate::fpga::machine`], the words codes. Every unit takes a
-//! clock; a divider of more only stretches the clocks in which it is asked.
+//! The ports and the handshake are those of [`crate::fpga::machine`], the words codes. Units may take several
+//! clocks ([`FixedMachine::units`]): a clock of the machine is then a step, which lasts as long as the slowest
+//! unit that it uses, and does all in its last clock.
 
 use super::CodePair;
 use super::datapath::{FixedDatapath, PortAccess, UnitUse};
 use super::registers::FixedRegisters;
 use crate::fpga::memory::SinglePortRam;
 use crate::fpga::registers::ControlState;
+use crate::fpga::timing::Units;
 
 /// Control machine of a fixed-point pipeline with its registers: what each state does in its clock.
 ///
@@ -34,19 +36,24 @@ pub trait FixedMachine: Clone {
     /// Synthesis-time constants.
     fn config(&self) -> &Self::Config;
 
+    /// Latencies of the units.
+    fn units(&self) -> Units {
+        Units::ONE_CLOCK
+    }
+
     /// Registers that every pipeline has.
     fn registers(&self) -> &FixedRegisters<Self::State>;
 
     /// The same, for the sequencer's handshake.
     fn registers_mut(&mut self) -> &mut FixedRegisters<Self::State>;
 
-    /// Whether the output strobe is up in this clock.
+    /// Whether the output strobe is up in the first clock of this step.
     fn strobes_output(&self) -> bool;
 
     /// Clock of the loading state, in which `pair` is taken.
     fn load(&mut self, pair: CodePair, datapath: &mut FixedDatapath<'_>);
 
-    /// Clock of any state but idle and loading; clearing is one.
+    /// Step of any state but idle and loading; clearing is one.
     ///
     /// * `next_waits`: whether the input strobe is up.
     fn step(&mut self, next_waits: bool, datapath: &mut FixedDatapath<'_>);
@@ -74,6 +81,8 @@ pub struct FixedClock {
     pub ramb: PortAccess,
     /// Units.
     pub units: UnitUse,
+    /// A unit is waited for: nothing moves.
+    pub waits: bool,
     /// The offered pair was taken.
     pub accepted: bool,
     /// Code of the output, in the one clock in which its strobe is up.
@@ -86,6 +95,8 @@ pub struct FixedSequencer<M> {
     machine: M,
     /// RAMA, RAMB.
     memories: [SinglePortRam<i64>; 2],
+    /// Clocks that the step under way still takes; none in its first one.
+    left: u64,
 }
 
 impl<M: FixedMachine> FixedSequencer<M> {
@@ -95,6 +106,7 @@ impl<M: FixedMachine> FixedSequencer<M> {
         Self {
             machine: M::new(config),
             memories: M::memories(&config),
+            left: 0,
         }
     }
 
@@ -102,6 +114,7 @@ impl<M: FixedMachine> FixedSequencer<M> {
     pub fn reset(&mut self) {
         self.machine = M::new(*self.machine.config());
         self.machine.registers_mut().state = M::CLEARING;
+        self.left = 0;
     }
 
     /// The constants.
@@ -132,8 +145,20 @@ impl<M: FixedMachine> FixedSequencer<M> {
     /// not taken.
     pub fn tick(&mut self, input: Option<CodePair>) -> FixedClock {
         let registers = *self.machine.registers();
-        let strobes = self.machine.strobes_output();
+        let strobes = self.left == 0 && self.machine.strobes_output();
+        let output = strobes.then_some(registers.output);
         let is_loading = registers.state == M::LOADING;
+        if self.unit_is_busy(registers.state, input.is_some()) {
+            return FixedClock {
+                registers: registers.coded(),
+                rama: PortAccess::default(),
+                ramb: PortAccess::default(),
+                units: UnitUse::default(),
+                waits: true,
+                accepted: false,
+                output,
+            };
+        }
         let mut datapath = FixedDatapath::new(&mut self.memories);
         if !is_loading && registers.state != M::State::IDLE {
             self.machine.step(input.is_some(), &mut datapath);
@@ -154,9 +179,26 @@ impl<M: FixedMachine> FixedSequencer<M> {
             rama,
             ramb,
             units,
+            waits: false,
             accepted: is_loading && input.is_some(),
-            output: strobes.then_some(registers.output),
+            output,
         }
+    }
+
+    /// Counts a clock of the step under way; whether a unit that it uses needs another one. The units are
+    /// those that it uses in fact: a copy of the machine is sent ahead to see, and what it wrote is taken back.
+    fn unit_is_busy(&mut self, state: M::State, next_waits: bool) -> bool {
+        let units = self.machine.units();
+        if !units.wait() || [M::LOADING, M::State::IDLE, M::CLEARING].contains(&state) {
+            return false;
+        }
+        if self.left == 0 {
+            let mut datapath = FixedDatapath::new(&mut self.memories);
+            self.machine.clone().step(next_waits, &mut datapath);
+            self.left = datapath.undo().clocks(units);
+        }
+        self.left -= 1;
+        self.left > 0
     }
 }
 

@@ -8,43 +8,85 @@ use rayon::prelude::*;
 use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 
 /// Samples that one thread integrates at a time.
-const PART: usize = 1 << 16;
+pub(crate) const PART: usize = 1 << 16;
 
 /// Second differences handled per pass over the cache: every tau visits a block before the next
 /// block is read, so that short ones read memory once altogether.
-const BLOCK: usize = 2048;
-
-/// Blocks that one thread handles in a row, so that what the longer of these tau read ahead is
-/// still in its cache when it is their turn.
-const BLOCKS_IN_A_ROW: usize = 32;
+pub(crate) const BLOCK: usize = 2048;
 
 /// Angle about the mean rate, `[n + 1]`, in units of (deg/h) times one sample period, from zero on.
 ///
 /// The mean cancels in every second difference; leaving it out keeps the digits of the rest. A
 /// missing sample (NaN) counts as the mean, so that it adds nothing.
 pub(crate) fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
-    let (near, sums) = sums_of_parts(rate_deg_per_h);
+    let (mean, starts) = starts_of_parts(rate_deg_per_h);
+    let mut angle = vec![0.0; rate_deg_per_h.len() + 1];
+    angle[1..]
+        .par_chunks_mut(PART)
+        .zip(rate_deg_per_h.par_chunks(PART))
+        .zip(starts)
+        .for_each(|((angles, rates), start)| integrate(rates, mean, start, angles));
+    angle
+}
+
+/// Those of the same angles that lie at multiples of an averaging factor, 0 included, for each factor.
+///
+/// * `blocks`: most multiples that are wanted beside 0.
+///
+/// All angles of a long record are as large as the record itself: here they exist part by part.
+pub(crate) fn angles_at_multiples(
+    rates: &[f64],
+    factors: &[usize],
+    blocks: usize,
+) -> Vec<Vec<f64>> {
+    let (mean, starts) = starts_of_parts(rates);
+    let parts = rates.par_chunks(PART).zip(starts).enumerate();
+    let found: Vec<Vec<Vec<f64>>> = parts
+        .map_init(
+            || vec![0.0; PART],
+            |angle, (part, (rates, start))| {
+                let angle = &mut angle[..rates.len()];
+                integrate(rates, mean, start, angle);
+                // Behind the first rate of the part stands the angle of index `before + 1`.
+                let before = part * PART;
+                let of_factor = |&m: &usize| -> Vec<f64> {
+                    let first = (before / m + 1) * m;
+                    let last = (before + angle.len()).min(m.saturating_mul(blocks));
+                    let multiples = (first..=last).step_by(m);
+                    multiples.map(|index| angle[index - before - 1]).collect()
+                };
+                factors.iter().map(of_factor).collect()
+            },
+        )
+        .collect();
+    let of_factor = |at: usize| {
+        let parts = found.iter().map(|part| part[at].as_slice());
+        let parts: Vec<&[f64]> = std::iter::once(&[0.0][..]).chain(parts).collect();
+        parts.concat()
+    };
+    (0..factors.len()).map(of_factor).collect()
+}
+
+/// Mean rate, and the angle about it at the start of every part.
+pub(crate) fn starts_of_parts(rates: &[f64]) -> (f64, Vec<f64>) {
+    let (near, sums) = sums_of_parts(rates);
     let rest = rest_of_mean(&sums);
-    let mean = near + rest;
     let mut starts = Vec::with_capacity(sums.len());
     let mut start = 0.0;
     for (sum, present) in &sums {
         starts.push(start);
         start += sum - *present as f64 * rest;
     }
-    let mut angle = vec![0.0; rate_deg_per_h.len() + 1];
-    angle[1..]
-        .par_chunks_mut(PART)
-        .zip(rate_deg_per_h.par_chunks(PART))
-        .zip(starts)
-        .for_each(|((angles, rates), mut sum)| {
-            for (angle, rate) in angles.iter_mut().zip(rates) {
-                let step = rate - mean;
-                sum += if step.is_nan() { 0.0 } else { step };
-                *angle = sum;
-            }
-        });
-    angle
+    (near + rest, starts)
+}
+
+/// The angles behind `sum` after each rate of a part.
+pub(crate) fn integrate(rates: &[f64], mean: f64, mut sum: f64, angles: &mut [f64]) {
+    for (angle, rate) in angles.iter_mut().zip(rates) {
+        let step = rate - mean;
+        sum += if step.is_nan() { 0.0 } else { step };
+        *angle = sum;
+    }
 }
 
 /// A rate near the mean, and sums about it of every part with the number of rates in it: they do not
@@ -88,20 +130,16 @@ fn sum_about(rates: &[f64], near: f64) -> (f64, usize) {
     })
 }
 
-/// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` for every averaging factor m.
+/// Sum of squared second differences `x[k+2m] - 2x[k+m] + x[k]` of an array for every averaging factor m,
+/// part by part: what all that goes without the array is held against.
+#[cfg(test)]
 pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f64> {
-    let blocks: Vec<usize> = (0..angle.len()).step_by(BLOCK * BLOCKS_IN_A_ROW).collect();
-    let of_blocks = blocks.into_par_iter().map(|first| {
-        let mut sums = vec![0.0; factors.len()];
-        for start in (first..angle.len()).step_by(BLOCK).take(BLOCKS_IN_A_ROW) {
-            add_squares(&mut sums, factors, angle, (start, start + BLOCK));
-        }
-        sums
-    });
-    let parts: Vec<Vec<f64>> = of_blocks.collect();
-    // In the order of the parts, whichever thread was first.
     let mut sums = vec![0.0; factors.len()];
-    for part in parts {
+    for first in (0..angle.len()).step_by(PART) {
+        let mut part = vec![0.0; factors.len()];
+        for start in (first..angle.len().min(first + PART)).step_by(BLOCK) {
+            add_squares(&mut part, factors, angle, (start, start + BLOCK));
+        }
         for (sum, part) in sums.iter_mut().zip(part) {
             *sum += part;
         }
@@ -196,6 +234,26 @@ fn squares_in_lanes<S: Simd, const N: usize>(simd: S, parts: [[&[f64]; 3]; N]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[test]
+    fn angles_at_multiples_are_those_of_the_array() {
+        let longest: Vec<f64> = (0..2 * PART + 77)
+            .map(|k| 15.0 + ((k * k) % 1013) as f64)
+            .collect();
+        let factors = [1, 2, 3, 100, PART - 1, PART, PART + 1, 2 * PART];
+        for samples in [1, 300, PART - 1, PART, PART + 1, 2 * PART, 2 * PART + 77] {
+            let rates = &longest[..samples];
+            let angle = angle_about_mean(rates);
+            for blocks in [1, 50, usize::MAX] {
+                let found = angles_at_multiples(rates, &factors, blocks);
+                for (found, m) in found.iter().zip(factors) {
+                    let multiples = angle.iter().step_by(m).take(blocks.saturating_add(1));
+                    let wanted: Vec<f64> = multiples.copied().collect();
+                    assert_eq!(found, &wanted, "{samples} samples, every {m}th");
+                }
+            }
+        }
+    }
+
     #[test]
     fn blocks_agree_with_the_plain_sum() {
         let angle: Vec<f64> = (0..3 * BLOCK + 7)

@@ -72,7 +72,9 @@ impl<'a> Limits<'a> {
     /// A term, its square times `factor`, in deg/h and s.
     ///
     /// Below a `1/tau^2` term that is negative beyond chance, the mark of a loop or a filter, a
-    /// quantisation of any size could hide: nothing bounds it.
+    /// quantisation of any size could hide: nothing bounds it. Another square that is, as one in forty of a
+    /// term that is not there, leaves no true value; its limit is its standard error, below which no
+    /// record tells it from nothing.
     pub(crate) fn term(&self, index: usize, factor: f64) -> Term {
         let problem = &self.choice.problem;
         let own = if self.choice.allowed[index] {
@@ -90,11 +92,16 @@ impl<'a> Limits<'a> {
         let most = self.most(problem, index);
         low = low.min(most);
         high = high.min(most);
-        if index == INVERSE_SQUARE && high <= 0.0 {
-            high = f64::INFINITY;
+        let error = problem.standard_error(own, index);
+        if high <= 0.0 {
+            high = if index == INVERSE_SQUARE {
+                f64::INFINITY
+            } else {
+                error
+            };
         }
         let square = own.square(index) * unit;
-        let error = problem.standard_error(own, index) * unit;
+        let error = error * unit;
         Term::new(square, error, [low * unit, high * unit])
     }
 

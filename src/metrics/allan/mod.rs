@@ -20,3 +20,4 @@ pub(super) mod sampling;
 pub(super) mod stream;
 pub(super) mod sums;
 pub(super) mod variants;
+mod walk;

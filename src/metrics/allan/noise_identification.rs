@@ -1,5 +1,9 @@
 //! Which power law the noise follows at an averaging time.
 
+use rayon::prelude::*;
+
+use super::angle::angles_at_multiples;
+
 /// Fewest block means from which the lag-1 autocorrelation tells one power law from the next.
 const MEANS_MIN: usize = 30;
 
@@ -116,8 +120,7 @@ pub(crate) fn identify_noise(
     order: usize,
 ) -> Option<PowerLaw> {
     let m = averaged_samples;
-    let blocks = (angle.len().saturating_sub(1) / m).min(MEANS_MAX);
-    let means: Vec<f64> = (0..blocks)
+    let means: Vec<f64> = (0..means_of(angle.len(), m))
         .map(|block| {
             let (start, end) = (block * m, (block + 1) * m);
             if missing.is_some_and(|sum| sum[end] > sum[start]) {
@@ -128,6 +131,40 @@ pub(crate) fn identify_noise(
         })
         .collect();
     identify_by_means(means, order)
+}
+
+/// Means of so many samples that are used of a record of so many angles.
+fn means_of(angles: usize, averaged_samples: usize) -> usize {
+    (angles.saturating_sub(1) / averaged_samples).min(MEANS_MAX)
+}
+
+/// Angles that are held at a time, 8 MB.
+const ANGLES_HELD: usize = 1 << 20;
+
+/// As [`identify_noise`] of every averaging factor of a record that misses nothing, without its angles.
+pub(crate) fn identify_noise_of_record(
+    rates: &[f64],
+    factors: &[usize],
+    order: usize,
+) -> Vec<Option<PowerLaw>> {
+    let mut identified = Vec::with_capacity(factors.len());
+    let mut left = factors;
+    while !left.is_empty() {
+        let held = left.iter().scan(0, |sum, &m| {
+            *sum += means_of(rates.len() + 1, m) + 1;
+            Some(*sum)
+        });
+        let together = held.take_while(|held| *held <= ANGLES_HELD).count().max(1);
+        let (now, later) = left.split_at(together);
+        let angles = angles_at_multiples(rates, now, MEANS_MAX);
+        let identify = |(angle, &m): (&Vec<f64>, &usize)| {
+            let means = angle.windows(2).map(|two| (two[1] - two[0]) / m as f64);
+            identify_by_means(means.collect(), order)
+        };
+        identified.par_extend(angles.par_iter().zip(now).map(identify));
+        left = later;
+    }
+    identified
 }
 
 /// As [`identify_noise`] by the block means themselves, of which missing ones are NaN.

@@ -150,8 +150,7 @@ pub fn degrees_of_freedom(noise: NoiseType, angle_count: usize, averaged_samples
 ///   touch one are left out.
 /// * `sample_period_s`: s, > 0.
 ///
-/// Fewer than four samples give no point. One angle array (8 bytes a sample) is the only large
-/// memory; octave averaging times ([`overlapping_allan_at`]) do without.
+/// Fewer than four samples give no point.
 ///
 /// Source: IEEE Std 952-1997 annex C; NIST SP 1065 section 5.2.4.
 ///

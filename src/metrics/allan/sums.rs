@@ -5,9 +5,8 @@
 
 use rayon::prelude::*;
 
-use super::angle::{
-    add_squares, angle_about_mean, mean_rate, second_difference_sums, squared_second_differences,
-};
+use super::angle::{add_squares, mean_rate, squared_second_differences};
+use super::walk::second_difference_sums_by_walking;
 
 /// Samples whose short averaging times one thread handles at a time.
 const PART: usize = 1 << 16;
@@ -30,7 +29,7 @@ const FAR_CACHE: usize = 1 << 16;
 /// Short averaging times see the record part by part, with the angles from the part's start on; the
 /// origin of an angle cancels in its differences. Far ones that are multiples of the shortest of
 /// them, m0, and of [`CELL`] see it column by column: the angles at k, k + m0, k + 2 m0, ... serve all
-/// of them. Records without such a set of factors take the array.
+/// of them. Records without such a set of factors are walked along.
 pub(crate) fn second_difference_sums_of_record(rates: &[f64], factors: &[usize]) -> Vec<f64> {
     let far: Vec<usize> = factors.iter().copied().filter(|&m| m >= FAR).collect();
     let spacing = far.iter().copied().min().unwrap_or(rates.len() + 1);
@@ -38,7 +37,7 @@ pub(crate) fn second_difference_sums_of_record(rates: &[f64], factors: &[usize])
     let width = FAR_CACHE / rows / CELL * CELL;
     let fits = spacing.is_multiple_of(CELL) && far.iter().all(|m| m.is_multiple_of(spacing));
     if !far.is_empty() && (!fits || width == 0) {
-        return second_difference_sums(&angle_about_mean(rates), factors);
+        return second_difference_sums_by_walking(rates, factors);
     }
     let mean = mean_rate(rates);
     let near: Vec<usize> = factors.iter().copied().filter(|&m| m < FAR).collect();
@@ -175,6 +174,7 @@ fn far_times(
 
 #[cfg(test)]
 mod tests {
+    use super::super::angle::{angle_about_mean, second_difference_sums};
     use super::*;
 
     #[test]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::angle::angle_about_mean;
 use super::bridges::BridgedAngle;
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
-use super::noise_identification::{PowerLaw, identify_noise};
+use super::noise_identification::{PowerLaw, identify_noise, identify_noise_of_record};
 use super::overlapping::AllanPoint;
 use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
@@ -232,32 +232,33 @@ pub fn allan_variant_at(
     averaging_factors: &[usize],
     options: &AllanOptions,
 ) -> Vec<AllanVariantPoint> {
-    let angle = angle_about_mean(rate_deg_per_h);
     let missing = missing_before(rate_deg_per_h);
     let missing = missing.as_deref();
     let estimator = options.estimator;
-    let differences = estimator.differences();
     let factors: Vec<usize> = averaging_factors
         .iter()
         .copied()
         .filter(|&m| m > 0 && m <= rate_deg_per_h.len() / estimator.span())
         .collect();
-    let identify = |&m: &usize| identify_noise(&angle, missing, m, differences.order);
-    let identified: Vec<Option<PowerLaw>> = factors.par_iter().map(identify).collect();
-    let possible = |m: usize| possible_differences(angle.len(), m, estimator);
+    let order = estimator.differences().order;
+    let angles = rate_deg_per_h.len() + 1;
+    let possible = |m: usize| possible_differences(angles, m, estimator);
     // The overlapping deviation of a whole record goes through the cache once for all tau.
-    let sums: Vec<(f64, usize)> = if missing.is_none() && estimator == AllanEstimator::Overlapping {
+    let is_whole = missing.is_none() && estimator == AllanEstimator::Overlapping;
+    let (identified, sums): (Vec<Option<PowerLaw>>, Vec<(f64, usize)>) = if is_whole {
+        let identified = identify_noise_of_record(rate_deg_per_h, &factors, order);
         let sums = second_difference_sums_of_record(rate_deg_per_h, &factors).into_iter();
-        sums.zip(&factors)
-            .map(|(sum, &m)| (sum, possible(m)))
-            .collect()
+        let sums = sums.zip(&factors).map(|(sum, &m)| (sum, possible(m)));
+        (identified, sums.collect())
     } else {
-        let sum = |&m: &usize| {
+        let angle = angle_about_mean(rate_deg_per_h);
+        let find = |&m: &usize| {
             let reach = reach(m, estimator);
             let whole = |start: usize| missing.is_none_or(|sum| sum[start + reach] == sum[start]);
-            sum_of_squares(&angle, m, estimator, whole)
+            let noise = identify_noise(&angle, missing, m, order);
+            (noise, sum_of_squares(&angle, m, estimator, whole))
         };
-        factors.par_iter().map(sum).collect()
+        factors.par_iter().map(find).unzip()
     };
     let found = factors.iter().zip(identified).zip(sums);
     let found = found.map(|((&m, noise), (sum, count))| FoundSum {
@@ -268,7 +269,7 @@ pub fn allan_variant_at(
         count,
         possible: possible(m),
     });
-    points_of(found, angle.len(), sample_period_s, options)
+    points_of(found, angles, sample_period_s, options)
 }
 
 /// What was found at an averaging factor.

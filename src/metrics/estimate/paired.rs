@@ -37,6 +37,48 @@ const SAMPLES_MIN: usize = 4;
 /// 1/6, their squares by 1/36.
 const WINDOW_FREEDOM: f64 = 1.0 / (1.0 + 2.0 / 36.0);
 
+/// Values by their index: those of a slice, or made one by one where a record of them would be as long as
+/// that of a channel.
+pub(crate) trait Values: Copy {
+    /// How many there are.
+    fn count(self) -> usize;
+    /// The value of an index below that.
+    fn at(self, index: usize) -> f64;
+    /// All of them in their order.
+    fn each(self) -> impl Iterator<Item = f64> {
+        (0..self.count()).map(move |index| self.at(index))
+    }
+}
+
+impl Values for &[f64] {
+    fn count(self) -> usize {
+        self.len()
+    }
+
+    fn at(self, index: usize) -> f64 {
+        self[index]
+    }
+}
+
+/// Values that a function makes of their index.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Made<F> {
+    /// How many there are.
+    pub(crate) count: usize,
+    /// What makes them.
+    pub(crate) of: F,
+}
+
+impl<F: Fn(usize) -> f64 + Copy> Values for Made<F> {
+    fn count(self) -> usize {
+        self.count
+    }
+
+    fn at(self, index: usize) -> f64 {
+        (self.of)(index)
+    }
+}
+
 /// How the mean of values scatters with their number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeanScatter {
@@ -48,14 +90,16 @@ pub(crate) struct MeanScatter {
 
 impl MeanScatter {
     /// Of values whose ends reach over `reach` samples.
-    pub(crate) fn of(values: &[f64], reach: usize) -> Self {
-        let count = values.len();
+    pub(crate) fn of(values: impl Values, reach: usize) -> Self {
+        let count = values.count();
         let long = count / LONG_BLOCKS;
         if long < SAMPLES_MIN {
             let freedom = count.max(2) as f64 - 1.0;
             let of = |variance: f64| Spread { variance, freedom };
             return Self {
-                density: of(interval::sample_variance(values)),
+                density: of(interval::sample_variance(
+                    &values.each().collect::<Vec<_>>(),
+                )),
                 ends: of(0.0),
             };
         }
@@ -80,12 +124,12 @@ impl MeanScatter {
     ///   windows do not tell from it.
     /// * `cycle`: samples of a swing, whose phase the ends of all blocks share.
     pub(crate) fn of_paired(
-        differences: &[f64],
-        aligned: &[f64],
+        differences: impl Values,
+        aligned: impl Values,
         reach: usize,
         cycle: Option<f64>,
     ) -> Self {
-        let long = aligned.len() / LONG_BLOCKS;
+        let long = aligned.count() / LONG_BLOCKS;
         if long < SAMPLES_MIN {
             return Self::of(differences, reach);
         }
@@ -99,14 +143,14 @@ impl MeanScatter {
     /// of few cycles does not tell it from frequency zero, but where it holds two whole ones or more: these
     /// are zeros of its window.
     pub(crate) fn of_paired_about_swing(
-        differences: &[f64],
-        aligned: &[f64],
+        differences: impl Values,
+        aligned: impl Values,
         reach: usize,
         cycle: f64,
     ) -> Self {
-        let long = (aligned.len() / LONG_BLOCKS) as f64;
+        let long = (aligned.count() / LONG_BLOCKS) as f64;
         let whole = interval::round_to_count((long / cycle).ceil().max(2.0) * cycle);
-        if long >= CYCLES_APART * cycle || 2 * whole > aligned.len() {
+        if long >= CYCLES_APART * cycle || 2 * whole > aligned.count() {
             return Self::of_paired(differences, aligned, reach, None);
         }
         let density = tapered_density(aligned, whole);
@@ -118,7 +162,7 @@ impl MeanScatter {
     ///
     /// * `cycle`: samples of a swing, whose phase the ends of all blocks share.
     pub(crate) fn of_known_density(
-        differences: &[f64],
+        differences: impl Values,
         density: Spread,
         reach: usize,
         cycle: Option<f64>,
@@ -145,14 +189,19 @@ impl MeanScatter {
     }
 
     /// Of differences with this density, in blocks of so many samples at least.
-    fn of_blocks(differences: &[f64], density: Spread, least: usize, cycle: Option<f64>) -> Self {
-        let short = whole(least, cycle).max(differences.len() as f64 / SHORT_BLOCKS_MAX as f64);
+    fn of_blocks(
+        differences: impl Values,
+        density: Spread,
+        least: usize,
+        cycle: Option<f64>,
+    ) -> Self {
+        let short = whole(least, cycle).max(differences.count() as f64 / SHORT_BLOCKS_MAX as f64);
         Self {
             density,
             ends: ends(
                 differences,
                 density,
-                short.min(differences.len() as f64 / 2.0),
+                short.min(differences.count() as f64 / 2.0),
             ),
         }
     }
@@ -280,11 +329,16 @@ fn whole(least: usize, cycle: Option<f64>) -> f64 {
 }
 
 /// E of plain blocks of so many samples: what their means have beyond the density.
-fn ends(values: &[f64], density: Spread, length: f64) -> Spread {
-    let blocks = interval::round_to_count((values.len() as f64 / length).floor());
+fn ends(values: impl Values, density: Spread, length: f64) -> Spread {
+    let count = values.count();
+    let blocks = interval::round_to_count((count as f64 / length).floor());
     let border = |block: usize| interval::round_to_count(block as f64 * length);
     let means: Vec<f64> = (0..blocks)
-        .map(|block| interval::mean(&values[border(block)..border(block + 1).min(values.len())]))
+        .map(|block| {
+            let (first, end) = (border(block), border(block + 1).min(count));
+            let sum: f64 = (first..end).map(|index| values.at(index)).sum();
+            sum / (end - first).max(1) as f64
+        })
         .collect();
     let beyond = interval::sample_variance(&means) - density.variance / length;
     Spread {
@@ -296,7 +350,7 @@ fn ends(values: &[f64], density: Spread, length: f64) -> Spread {
 /// Values delayed by a number of samples that need not be whole, linear between two, in their order.
 ///
 /// The first ones, for which there is no earlier sample, stay as they are.
-pub(crate) fn delayed(values: &[f64], samples: f64) -> impl Iterator<Item = f64> {
+pub(crate) fn delayed(values: &[f64], samples: f64) -> impl Values {
     let samples = samples.clamp(0.0, values.len() as f64 / 4.0);
     let whole = interval::round_to_count(samples.floor());
     let part = samples - samples.floor();
@@ -305,26 +359,25 @@ pub(crate) fn delayed(values: &[f64], samples: f64) -> impl Iterator<Item = f64>
             .checked_sub(samples)
             .map_or(values[index], |index| values[index])
     };
-    (0..values.len())
-        .map(move |index| (1.0 - part) * back(index, whole) + part * back(index, whole + 1))
+    Made {
+        count: values.len(),
+        of: move |index| (1.0 - part) * back(index, whole) + part * back(index, whole + 1),
+    }
 }
 
 /// Spectral density at zero frequency: variance of a mean times its length, from Hann windows.
 ///
 /// Source: Welch, IEEE Trans. Audio Electroacoust. 15 (1967).
-fn tapered_density(values: &[f64], length: usize) -> Spread {
+fn tapered_density(values: impl Values, length: usize) -> Spread {
     let window: Vec<f64> = (0..length)
         .map(|k| 1.0 - (TAU * (k as f64 + 0.5) / length as f64).cos())
         .collect();
     let power: f64 = window.iter().map(|weight| weight * weight).sum();
     let step = length / 2;
-    let sums: Vec<f64> = (0..=(values.len() - length) / step)
+    let sums: Vec<f64> = (0..=(values.count() - length) / step)
         .map(|block| {
-            let part = &values[block * step..block * step + length];
-            part.iter()
-                .zip(&window)
-                .map(|(value, weight)| value * weight)
-                .sum()
+            let part = (block * step..).zip(&window);
+            part.map(|(index, weight)| values.at(index) * weight).sum()
         })
         .collect();
     Spread {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::metrics::estimate::influence::{Learned, Spread};
 use crate::metrics::estimate::interval;
-use crate::metrics::estimate::paired::{MeanScatter, delayed, density_at_zero};
+use crate::metrics::estimate::paired::{Made, MeanScatter, Values, delayed, density_at_zero};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -148,7 +148,7 @@ pub(crate) fn mean_spread_of(
         // What is missing is not waited for: noise on either side of a few words is hardly nearer.
         let present = present(noise);
         let count = samples - (noise.len() - present.len());
-        MeanScatter::of(&present, filter_reach(filter)).over(count)
+        MeanScatter::of(&*present, filter_reach(filter)).over(count)
     };
     let scatter = filter.map_or(WeightScatter::Blocks, |facts| {
         facts.weight_scatter(samples, 0.0)
@@ -274,27 +274,27 @@ pub(crate) fn paired_scatter(
     facts: &FilterFacts,
     cycle: Option<f64>,
 ) -> MeanScatter {
-    let minus = |raw: f64, own: f64| own - gain * raw;
-    let plain = || -> Vec<f64> {
-        raw.iter()
-            .zip(own)
-            .map(|(raw, own)| minus(*raw, *own))
-            .collect()
+    // None of these is held: each would be as long as the record.
+    let plain = Made {
+        count: own.len(),
+        of: |index: usize| own[index] - gain * raw[index],
     };
     let reach = filter_reach(Some(facts));
     if let Some(given) = facts.given() {
         let density = density_at_zero(raw).scaled(given.dc_gain() - gain);
         let density = density.plus(rounding_density((own, raw), facts));
-        return MeanScatter::of_known_density(&plain(), density, reach, None);
+        return MeanScatter::of_known_density(plain, density, reach, None);
     }
-    let delay = facts.delay_at_dc_samples();
+    let input = delayed(raw, facts.delay_at_dc_samples());
     // Delayed, the first samples have no input.
     let whole = reach.min(own.len() / 2);
-    let aligned = delayed(raw, delay).zip(own).skip(whole);
-    let aligned: Vec<f64> = aligned.map(|(raw, own)| minus(raw, *own)).collect();
+    let aligned = Made {
+        count: own.len() - whole,
+        of: |index: usize| own[whole + index] - gain * input.at(whole + index),
+    };
     match cycle {
-        Some(cycle) => MeanScatter::of_paired_about_swing(&plain(), &aligned, reach, cycle),
-        None => MeanScatter::of_paired(&plain(), &aligned, reach, None),
+        Some(cycle) => MeanScatter::of_paired_about_swing(plain, aligned, reach, cycle),
+        None => MeanScatter::of_paired(plain, aligned, reach, None),
     }
 }
 

@@ -84,7 +84,8 @@ pub(crate) fn measure_multi_sine(
         sample_period_s: record.sample_period_s,
         first_stamp_s: record.first_stamp_s,
     };
-    let mut series = vec![record.channel_deg_per_h, record.truth_deg_per_h];
+    let truth = record.truth_deg_per_h.words();
+    let mut series = vec![record.channel_deg_per_h, &truth];
     if filter.is_some() {
         series.push(record.raw_deg_per_h);
     }
@@ -163,7 +164,7 @@ fn measure_tracking(record: &Record, metrics: &mut ChannelMetrics) {
     let squares: Vec<f64> = record
         .channel_deg_per_h
         .iter()
-        .zip(record.truth_deg_per_h)
+        .zip(record.truth_deg_per_h.iter())
         .map(|(rate, truth)| (rate - truth) * (rate - truth))
         .collect();
     let parts = equal_block_means(&squares, RATIO_BLOCKS);

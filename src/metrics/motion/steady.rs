@@ -323,7 +323,7 @@ fn measure_mean(
         Ok(spread) => spread.plus(Spread::known(slow)).about(mean),
         Err(reason) => Estimate::without_interval(mean, reason),
     };
-    let truth = record.truth().map(interval::mean);
+    let truth = record.truth().map(|truth| truth.mean());
     enter_mean(
         estimate,
         truth,

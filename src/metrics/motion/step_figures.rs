@@ -83,8 +83,11 @@ impl StepFigures {
         else {
             return None;
         };
-        let (channel, truth) = (record.channel_deg_per_h, record.truth()?);
-        let errors = channel.iter().zip(truth).map(|(rate, truth)| rate - truth);
+        let (channel, truth) = (record.channel_deg_per_h, record.truth()?.words());
+        let errors = channel
+            .iter()
+            .zip(truth.iter())
+            .map(|(rate, truth)| rate - truth);
         let square = errors.map(|error| error * error).sum::<f64>() / channel.len() as f64;
         Some(Self {
             mean_deg_per_h: interval::mean(channel),
@@ -177,6 +180,7 @@ mod tests {
     use crate::metrics::measure::measure;
     use crate::metrics::record::{Dwell, FilterFacts, Settings, Staircase};
     use crate::random::Streams;
+    use crate::signal::Rates;
     use crate::signal::{FilterShape, WeightRule};
 
     const DWELL: usize = 500;
@@ -232,7 +236,7 @@ mod tests {
         let record = Record {
             channel_deg_per_h: &channel,
             raw_deg_per_h: &raw,
-            truth_deg_per_h: &truth,
+            truth_deg_per_h: Rates::Words(&truth),
             response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: 1e-3,

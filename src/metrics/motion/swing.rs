@@ -142,7 +142,7 @@ pub(crate) fn measure_swing(
         channel: fit_swing(record.channel_deg_per_h, &clock)?,
         raw: fit_swing(record.raw_deg_per_h, &clock)?,
         truth: match record.truth() {
-            Some(truth) => Some(fit_swing(truth, &clock)?),
+            Some(truth) => Some(fit_swing(&truth.words(), &clock)?),
             None => None,
         },
         encoder: match record.encoder_rad {
@@ -166,6 +166,7 @@ pub(crate) fn measure_swing(
     let response = Response::new(record, &fits, &clock, filter);
     measure_sines(&fits, &response, &clock, filter, metrics);
     if let Some(truth) = record.truth() {
+        let truth = &truth.words();
         measure_correlation(truth, record, &response, filter, metrics);
         let by_weights = response.tracking_by_weights(&fits, filter);
         measure_tracking(truth, record, &fits, by_weights, metrics);
@@ -464,12 +465,10 @@ fn measure_bound(
         bounds_without: &without,
     };
     of.put(facts, over.as_ref(), metrics);
-    let bound = bound.map(|least| {
-        let at = |delay| at(delay, &autocovariance).ok();
-        (least.over_delay(&delay, at, &left_out), least)
-    });
-    if let (Ok((bound, _)), None) = (&bound, &over) {
-        widen_over_bound(bound, &left_out, metrics);
+    let at = |delay| at(delay, &autocovariance).ok();
+    let bound = bound.map(|least| (least.over_delay(&delay, at, &left_out), least));
+    if over.is_none() {
+        widen_over_bound(&delay, at, metrics);
     }
     put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
     put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::mean::{GYRO_REACH, filter_reach, rounding_density};
 use crate::metrics::estimate::influence::{Learned, Spread};
-use crate::metrics::estimate::paired::{MeanScatter, delayed, ends_about_swing};
+use crate::metrics::estimate::paired::{MeanScatter, Values, delayed, ends_about_swing};
 use crate::metrics::estimate::value::Estimate;
 use crate::metrics::record::{FilterFacts, Record, WeightScatter};
 use crate::metrics::sine::fit::{SwingClock, SwingFit};
@@ -224,13 +224,18 @@ fn paired_scatter(
             return ends.map(|ends| MeanScatter::known(density, ends.scaled(scale)));
         }
         return parts(&mut raw.iter().copied(), turned)
-            .map(|part| MeanScatter::of_known_density(&part, density, reach, Some(cycle)));
+            .map(|part| MeanScatter::of_known_density(&part[..], density, reach, Some(cycle)));
     }
     let delay = filter.map_or(0.0, FilterFacts::delay_at_dc_samples);
     let plain = parts(&mut raw.iter().copied(), turned);
-    let aligned = parts(&mut delayed(&raw, delay), turned + angular * delay);
+    let aligned = parts(&mut delayed(&raw, delay).each(), turned + angular * delay);
     let first = reach.min(own.len() / 2);
     [0, 1].map(|part| {
-        MeanScatter::of_paired(&plain[part], &aligned[part][first..], reach, Some(cycle))
+        MeanScatter::of_paired(
+            &plain[part][..],
+            &aligned[part][first..],
+            reach,
+            Some(cycle),
+        )
     })
 }

@@ -44,11 +44,11 @@ pub(crate) fn measure_tracking(
     let values = record.channel_deg_per_h;
     let errors: Vec<f64> = values
         .iter()
-        .zip(record.truth_deg_per_h)
+        .zip(record.truth_deg_per_h.iter())
         .map(|(rate, truth)| rate - truth)
         .collect();
     let noise = &errors[settled.unwrap_or(0)..];
-    let truth = interval::mean(record.truth_deg_per_h);
+    let truth = record.truth_deg_per_h.mean();
     let mean = interval::mean(&errors) + truth;
     let estimate = match mean_spread_of(record, noise, filter, false) {
         Ok(spread) => spread.about(mean),
@@ -84,7 +84,8 @@ fn square_spread(
     let lags = reach.min(noise.len() / LAGS_PER_TAIL);
     let colour = autocovariance(noise, lags);
     let mut cross = 0.0;
-    let changes = record.truth_deg_per_h.windows(2).enumerate();
+    let truth = record.truth_deg_per_h.words();
+    let changes = truth.windows(2).enumerate();
     let changes = changes.filter(|(_, two)| two[0] < two[1] || two[1] < two[0]);
     let mut end = 0;
     for (change, _) in changes {
@@ -107,7 +108,7 @@ fn square_spread(
             .sum::<f64>();
     }
     let n = errors.len() as f64;
-    let of_noise = MeanScatter::of(&squares, reach).density_over(errors.len());
+    let of_noise = MeanScatter::of(&squares[..], reach).density_over(errors.len());
     of_noise.plus(Spread::known(4.0 * cross.max(0.0) / (n * n)))
 }
 

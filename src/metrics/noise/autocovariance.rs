@@ -1,5 +1,7 @@
 //! Autocovariance of a record, kept per block of time for the jackknife.
 
+use std::ops::Range;
+
 use super::by_weights::NoiseByWeights;
 use crate::metrics::estimate::influence::{Learned, resampled, spread};
 use crate::metrics::estimate::interval;
@@ -98,6 +100,9 @@ pub(crate) struct LaggedProducts {
     sums: Vec<Vec<f64>>,
     /// `counts[block][lag]`.
     counts: Vec<Vec<usize>>,
+    /// Sum and number at each lag of those pairs of a block whose later sample the next one holds; none of
+    /// a record that came in bit by bit.
+    across: Vec<Vec<(f64, usize)>>,
 }
 
 impl LaggedProducts {
@@ -107,9 +112,12 @@ impl LaggedProducts {
         let blocks = blocks.clamp(1, values.len().max(1));
         let mut sums = vec![vec![0.0; largest_lag + 1]; blocks];
         let mut counts = vec![vec![0; largest_lag + 1]; blocks];
+        let mut across = Vec::with_capacity(blocks);
         let mut deviations = Vec::with_capacity(CHUNK + largest_lag);
         for block in 0..blocks {
             let block_end = values.len() * (block + 1) / blocks;
+            let first = values.len() * block / blocks;
+            across.push(pairs_across(values, centre, first..block_end, largest_lag));
             let mut start = values.len() * block / blocks;
             while start < block_end {
                 let end = (start + CHUNK).min(block_end);
@@ -125,7 +133,11 @@ impl LaggedProducts {
                 start = end;
             }
         }
-        Self { sums, counts }
+        Self {
+            sums,
+            counts,
+            across,
+        }
     }
 
     /// The same about another centre, `step` above: of blocks with these sums of deviations.
@@ -152,10 +164,14 @@ impl LaggedProducts {
         self.mean_products(None)
     }
 
-    /// Autocovariance of the pairs of one block.
+    /// Autocovariance of the samples of one block alone, as if they were a record.
     pub(crate) fn autocovariance_of(&self, block: usize) -> Vec<f64> {
         let lags = self.sums[block].iter().zip(&self.counts[block]);
-        lags.map(|(sum, count)| sum / (*count).max(1) as f64)
+        let across = self.across.get(block).into_iter().flatten().copied();
+        let across = across.chain(std::iter::repeat((0.0, 0)));
+        let within = lags.zip(across);
+        within
+            .map(|((sum, count), (beyond, pairs))| (sum - beyond) / (count - pairs).max(1) as f64)
             .collect()
     }
 
@@ -207,6 +223,26 @@ impl LaggedProducts {
             })
             .collect()
     }
+}
+
+/// Sum and number, at lags `0 ..= largest_lag`, of the products about a centre of the pairs whose earlier
+/// sample lies in a range and the later behind it; pairs with a missing value (NaN) are left out.
+fn pairs_across(
+    values: &[f64],
+    centre: f64,
+    range: Range<usize>,
+    largest_lag: usize,
+) -> Vec<(f64, usize)> {
+    let end = range.end;
+    let of_lag = |lag: usize| {
+        let first = end.saturating_sub(lag).max(range.start);
+        let later = values.get(first + lag..).unwrap_or_default();
+        let pairs = values[first..end].iter().zip(later);
+        let products = pairs.map(|(one, other)| (one - centre) * (other - centre));
+        let present = products.filter(|product| !product.is_nan());
+        present.fold((0.0, 0), |(sum, count), product| (sum + product, count + 1))
+    };
+    (0..=largest_lag).map(of_lag).collect()
 }
 
 /// Lags whose products are summed side by side, so that none waits for the addition of another.
@@ -266,6 +302,7 @@ impl LaggedStream {
             products: LaggedProducts {
                 sums: Vec::new(),
                 counts: Vec::new(),
+                across: Vec::new(),
             },
             deviations: Vec::new(),
             waiting: Vec::new(),
@@ -293,7 +330,7 @@ impl LaggedStream {
             self.products.counts.push(vec![0; self.lags + 1]);
             self.deviations.push(0.0);
         }
-        let LaggedProducts { sums, counts } = &mut self.products;
+        let LaggedProducts { sums, counts, .. } = &mut self.products;
         let block = sums.len() - 1;
         add_products(deviations, own, &mut sums[block], &mut counts[block]);
         self.deviations[block] += deviations[..own].iter().sum::<f64>();
@@ -308,7 +345,7 @@ impl LaggedStream {
 
     /// Makes one block of two.
     fn merge(&mut self) {
-        let LaggedProducts { sums, counts } = &mut self.products;
+        let LaggedProducts { sums, counts, .. } = &mut self.products;
         let half = sums.len() / 2;
         for block in 0..half {
             for lag in 0..=self.lags {
@@ -414,6 +451,22 @@ mod tests {
                 .sum::<f64>()
                 / (values.len() - lag) as f64;
             assert!((got - plain).abs() < 1e-9 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn a_block_alone_has_the_autocovariance_of_its_samples() {
+        let values: Vec<f64> = (0..1003).map(|k| ((k * k) % 101) as f64).collect();
+        let products = LaggedProducts::new(&values, 50.0, 7, 20);
+        for block in 0..20 {
+            let own = &values[values.len() * block / 20..values.len() * (block + 1) / 20];
+            let alone = LaggedProducts::new(own, 50.0, 7, 1).autocovariance();
+            for (found, wanted) in products.autocovariance_of(block).iter().zip(alone) {
+                assert!(
+                    (found - wanted).abs() < 1e-9 * 1e4,
+                    "{block}: {found} {wanted}"
+                );
+            }
         }
     }
 

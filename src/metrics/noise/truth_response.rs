@@ -6,7 +6,7 @@ use crate::linear_algebra::singular_value_decomposition;
 use crate::metrics::estimate::interval;
 use crate::metrics::record::{FilterFacts, Record};
 use crate::metrics::theory::memory::{cascade, memory_samples};
-use crate::signal::WeightRule;
+use crate::signal::{Rates, WeightRule};
 
 /// Shifted copies of a series that the regression weighs, at most.
 const COLUMNS: usize = 16;
@@ -48,7 +48,7 @@ pub(crate) fn shown(record: &Record, filter: Option<&FilterFacts>) -> Option<Sho
     if of_gyro.is_empty() {
         let stride = reach(filter).div_ceil(COLUMNS - 1).max(1);
         return Some(Shown {
-            series: record.truth()?.to_vec(),
+            series: record.truth()?.words().into_owned(),
             offsets: spaced(0, stride, COLUMNS),
         });
     }
@@ -206,8 +206,8 @@ impl Shown {
 
 /// Whether the true rate changes from sample `start` on.
 pub(crate) fn moves(record: &Record, start: usize) -> bool {
-    let stretch = record.truth().and_then(|truth| truth.get(start..));
-    let Some([first, rest @ ..]) = stretch else {
+    let stretch = record.truth_deg_per_h.from(start);
+    let Rates::Words([first, rest @ ..]) = stretch else {
         return false;
     };
     rest.iter()

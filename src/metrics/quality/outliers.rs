@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::coarse::{DISTINCT_MIN, are_pulses, distinct_values, smallest_change};
-use super::sides::{SIDE, Sides};
+use super::sides::{SIDE, SIDE_MIN, Sides};
 use crate::metrics::estimate::interval::{PER_MEDIAN, median};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::key::metric::{Applies, MetricKey, Needs};
@@ -29,6 +29,9 @@ const BURST_MAX: usize = 32;
 
 /// Lengths of bursts whose prediction has a scatter of its own.
 const BURST_LENGTHS: [usize; 6] = [1, 2, 4, 8, 16, 32];
+
+/// Longest burst at an end of a record, words: of a longer one nothing tells a step.
+const END_BURST_MAX: usize = SIDE_MIN - 1;
 
 /// Places at which such a scatter is measured, at most.
 const PLACES_MAX: usize = 4096;
@@ -113,7 +116,8 @@ impl Outliers {
 /// robust line of its own slope and of that of the other side: farther than the threshold, and farther
 /// than these lie apart. So a glitch on top of a motion is found; a step, a bend or the end of a ramp, on
 /// which the sides disagree, is none, nor is what keeps off for more than 32 words. Words in a row that all
-/// lie outside are one event. The first and last four words have but one side and are not judged.
+/// lie outside are one event. The first and last four words have but one side: up to three of them in a row
+/// are judged by the lines through the next eight words and the eight beyond.
 ///
 /// The threshold is that of 0.01 false outliers in a Gaussian record of this length, whatever its colour:
 /// the scatter is that of the same prediction elsewhere in the record, by the median of its sizes, with
@@ -127,6 +131,7 @@ pub fn find_outliers(words_deg_per_h: &[f64]) -> Result<Outliers, Unavailable> {
     let search = Search {
         words,
         scale: Scale::of(words)?,
+        ends: [true; 2],
     };
     let events = search.events();
     check_share(events.len(), words.len())?;
@@ -199,6 +204,7 @@ impl OutlierStream {
         let search = Search {
             words: &self.waiting[..reach],
             scale: self.scale,
+            ends: [self.first == 0, end == self.first + self.waiting.len()],
         };
         let found = search.events().into_iter().map(|event| Outlier {
             first: self.first + event.first,
@@ -242,6 +248,9 @@ struct Scale {
     drift: f64,
     /// Standard deviation of the prediction of the middle of a burst of [`BURST_LENGTHS`].
     scatters: [f64; BURST_LENGTHS.len()],
+    /// That of the prediction of a word at an end of the record, the farthest of bursts of up to
+    /// [`END_BURST_MAX`].
+    end_scatter: f64,
     /// Places by which the least known of them is known.
     places: usize,
     /// Words of the record.
@@ -296,7 +305,9 @@ impl Scale {
             *scatter = found.max(least);
             places = places.min(count);
         }
+        let at_end = end_scatter(words).unwrap_or(f64::INFINITY);
         Some(Self {
+            end_scatter: at_end.max(least),
             edge: EDGE * change,
             drift,
             scatters,
@@ -311,6 +322,8 @@ impl Scale {
 struct Search<'a> {
     words: &'a [f64],
     scale: Scale,
+    /// Whether the words begin and end where the record does.
+    ends: [bool; 2],
 }
 
 impl Search<'_> {
@@ -357,7 +370,32 @@ impl Search<'_> {
                     .collect()
             })
             .collect();
-        parts.concat()
+        let [starts, ends] = self.ends;
+        let start = starts.then(|| vec![0]);
+        let end = ends.then(|| vec![self.words.len()]);
+        let all = start.into_iter().chain(parts).chain(end);
+        all.collect::<Vec<_>>().concat()
+    }
+
+    /// What stands beside a stretch, and the scatter of its prediction by that over the scatter of a
+    /// burst within the record.
+    fn beside(
+        &self,
+        (first, end): (usize, usize),
+        is_left_out: impl Fn(usize) -> bool,
+    ) -> Option<(Sides, f64)> {
+        let count = self.words.len();
+        let is_start = self.ends[0] && first < SIDE_MIN;
+        let is_end = self.ends[1] && count - end < SIDE_MIN;
+        if !is_start && !is_end {
+            return Sides::of(self.words, (first, end), is_left_out).map(|sides| (sides, 1.0));
+        }
+        if end - first > END_BURST_MAX {
+            return None;
+        }
+        let sides = Sides::at_end(self.words, (first, end), is_start, is_left_out)?;
+        let within = self.scale.scatters[burst_class(end - first)?];
+        Some((sides, self.scale.end_scatter / within))
     }
 
     /// Distance that a stretch must have by the scatter of the predictions on either side of it alone;
@@ -384,10 +422,9 @@ impl Search<'_> {
                 .into_iter()
                 .any(|it| (it.first..it.first + it.words).contains(&index))
         };
-        let sides = Sides::of(self.words, (first, end), is_left_out)?;
+        let (sides, ratio) = self.beside((first, end), is_left_out)?;
         let length = end - first;
-        let class = BURST_LENGTHS.iter().position(|it| *it >= length)?;
-        let scatter = self.scale.scatters[class];
+        let scatter = ratio * self.scale.scatters[burst_class(length)?];
         let local = LOCAL_SIZE_MIN * PER_MEDIAN * sides.scatter();
         let needed = (self.scale.threshold * scatter).max(local);
         let (mut size, mut least) = (0.0_f64, f64::INFINITY);
@@ -401,7 +438,7 @@ impl Search<'_> {
             let own = word - sides.between(offset as f64);
             size = if own.abs() > size.abs() { own } else { size };
         }
-        if least <= self.needed_among_neighbours(first, end) {
+        if least <= ratio * self.needed_among_neighbours(first, end) {
             return None;
         }
         Some(Outlier {
@@ -412,6 +449,11 @@ impl Search<'_> {
             least_deviations: least / scatter,
         })
     }
+}
+
+/// Place among [`BURST_LENGTHS`] of a burst of so many words.
+fn burst_class(words: usize) -> Option<usize> {
+    BURST_LENGTHS.iter().position(|it| *it >= words)
 }
 
 /// Distance, in standard deviations known from so many places, that one in a hundred Gaussian records of so
@@ -439,6 +481,18 @@ fn prediction_scatter(words: &[f64], length: usize) -> Option<(f64, usize)> {
         .collect();
     let count = sizes.len();
     (count > 0).then(|| (PER_MEDIAN * median(&mut sizes), count))
+}
+
+/// The same of a word that begins a record, the first of the longest burst there; that at the end has it too.
+fn end_scatter(words: &[f64]) -> Option<f64> {
+    let places = words.len().checked_sub(END_BURST_MAX + 2 * SIDE)? + 1;
+    let sizes = (0..places).step_by(places.div_ceil(PLACES_MAX));
+    let sizes = sizes.filter_map(|first| {
+        let sides = Sides::at_end(words, (first, first + END_BURST_MAX), true, |_| false)?;
+        Some((words[first] - sides.between(0.0)).abs())
+    });
+    let mut sizes: Vec<f64> = sizes.collect();
+    (!sizes.is_empty()).then(|| PER_MEDIAN * median(&mut sizes))
 }
 
 #[cfg(test)]
@@ -526,6 +580,37 @@ mod tests {
     }
 
     #[test]
+    fn a_spike_at_an_end_of_the_record_is_found_and_a_start_up_is_none() {
+        for (first, length) in [
+            (0, 1),
+            (0, 3),
+            (1, 2),
+            (3, 1),
+            (4999, 1),
+            (4997, 3),
+            (4996, 1),
+        ] {
+            for size in [14.0, -2000.0] {
+                let mut words = white(21, 5000);
+                for word in &mut words[first..first + length] {
+                    *word += size;
+                }
+                assert_eq!(found(&words), [(first, length)], "{size}");
+            }
+        }
+        // Ends of motions: a decay, a step that comes soon, a ramp, a swing.
+        let decay = |t: f64| 5e4 * (-t / 6.0).exp();
+        let step = |t: f64| if t < 4.0 { 5e4 } else { 0.0 };
+        let ramp = |t: f64| 500.0 * t;
+        let swing = |t: f64| 36_000.0 * (TAU * t / 400.0).cos();
+        let rise = |t: f64| (t - 4980.0).max(0.0).powi(2);
+        let motions: [&dyn Fn(f64) -> f64; 5] = [&decay, &step, &ramp, &swing, &rise];
+        for (case, motion) in motions.iter().enumerate() {
+            assert_eq!(found(&with(white(22, 5000), motion)), [], "motion {case}");
+        }
+    }
+
+    #[test]
     fn noise_that_grows_for_a_while_has_no_outliers() {
         let mut words = white(3, 20_000);
         for word in &mut words[8000..12_000] {
@@ -569,11 +654,13 @@ mod tests {
         let mut words = white(11, 700_000);
         let piece = OutlierStream::PIECE;
         for place in [
+            0,
             5,
             piece,
             piece + OutlierStream::MARGIN,
             2 * piece + 3,
             699_990,
+            699_999,
         ] {
             words[place] += 40.0;
         }
@@ -581,7 +668,7 @@ mod tests {
             *word -= 25.0;
         }
         let whole = find_outliers(&words).unwrap();
-        assert_eq!(whole.events.len(), 6);
+        assert_eq!(whole.events.len(), 8);
         for step in [1000, 70_001, 700_000] {
             let mut stream = OutlierStream::new(&words).unwrap();
             for part in words.chunks(step) {
@@ -593,7 +680,7 @@ mod tests {
         let mut stream = OutlierStream::new(&words[..100_000]).unwrap();
         stream.extend(&words);
         let found = stream.finish().unwrap();
-        assert_eq!(found.events.len(), 6);
+        assert_eq!(found.events.len(), 8);
         assert!((found.threshold_deviations / whole.threshold_deviations - 1.0).abs() < 0.01);
     }
 

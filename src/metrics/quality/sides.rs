@@ -87,6 +87,35 @@ impl Sides {
         let after = end..(end + reach).min(words.len());
         let left = Side::new(words, before.filter(|index| !is_left_out(*index)), first);
         let right = Side::new(words, after.filter(|index| !is_left_out(*index)), first);
+        Self::through([left, right])
+    }
+
+    /// The same for words at an end of a record: the lines through the eight words next to them and
+    /// through the eight beyond these.
+    ///
+    /// * `is_start`: whether the words stand at the start of the record, else at its end.
+    pub(crate) fn at_end(
+        words: &[f64],
+        (first, end): (usize, usize),
+        is_start: bool,
+        is_left_out: impl Fn(usize) -> bool,
+    ) -> Option<Self> {
+        let reach = 4 * SIDE;
+        let range = if is_start {
+            end..(end + reach).min(words.len())
+        } else {
+            first.saturating_sub(reach)..first
+        };
+        let mut indices: Vec<usize> = range.filter(|index| !is_left_out(*index)).collect();
+        if !is_start {
+            indices.reverse();
+        }
+        let side = |skipped: usize| Side::new(words, indices.iter().skip(skipped).copied(), first);
+        Self::through([side(0), side(SIDE)])
+    }
+
+    /// Nothing where a side has fewer than four words.
+    fn through([left, right]: [Side; 2]) -> Option<Self> {
         if left.count < SIDE_MIN || right.count < SIDE_MIN {
             return None;
         }

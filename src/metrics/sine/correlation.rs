@@ -53,7 +53,7 @@ impl Window<'_> {
             })
             .collect();
         let count = inner.len() as f64;
-        let inner = MeanScatter::of(&inner, 1)
+        let inner = MeanScatter::of(&inner[..], 1)
             .density_over(inner.len())
             .scaled(count);
         let correlation = covariance_at_lags(noise, 1);

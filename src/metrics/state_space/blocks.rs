@@ -5,7 +5,27 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::model::State;
+/// One state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct State {
+    /// Name, unique in its system.
+    pub name: String,
+    /// Unit.
+    pub unit: &'static str,
+    /// What it holds.
+    pub holds: &'static str,
+}
+
+impl State {
+    pub(super) fn new(name: impl Into<String>, unit: &'static str, holds: &'static str) -> Self {
+        Self {
+            name: name.into(),
+            unit,
+            holds,
+        }
+    }
+}
 
 /// `x[k+1] = F x[k] + w[k]`, `y[k] = H x[k] + v[k]` of one process.
 #[derive(Clone, Debug)]

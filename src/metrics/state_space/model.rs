@@ -2,8 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::blocks::{Block, drift, exponential, quantisation, sine, white};
+use super::agreement::Shown;
+use super::blocks::{Block, State, drift, exponential, quantisation, sine, white};
 use super::flicker::FlickerBank;
+use super::taps::Taps;
 use crate::metrics::allan::covariance::{CORRELATED, FLICKER, INVERSE_SQUARE, RAMP, WALK, WHITE};
 use crate::metrics::allan::curves::{ALLAN_FIT, COUNT, DEVIATION, FREEDOM, TAU};
 use crate::metrics::allan::extra_terms::{found_sine, without_sine};
@@ -13,6 +15,7 @@ use crate::metrics::allan::overlapping::AllanPoint;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
+use crate::metrics::noise::autocovariance::{AUTOCOVARIANCE, PRODUCT};
 
 /// Samples of the shortest averaging time, and part of the record that is the longest, between which a
 /// system has the Allan variance of the terms.
@@ -22,28 +25,6 @@ const TAU_MAX_PER_RECORD: f64 = 0.1;
 /// Allan variance at large tau of exponentially correlated noise of unit density behind its white part:
 /// `N^2/tau - 1.5 N^2 Tc/tau^2`.
 const LAG_INVERSE_SQUARE: f64 = 1.5;
-
-/// One state.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct State {
-    /// Name, unique in its system.
-    pub name: String,
-    /// Unit.
-    pub unit: &'static str,
-    /// What it holds.
-    pub holds: &'static str,
-}
-
-impl State {
-    pub(super) fn new(name: impl Into<String>, unit: &'static str, holds: &'static str) -> Self {
-        Self {
-            name: name.into(),
-            unit,
-            holds,
-        }
-    }
-}
 
 /// `x[k+1] = F x[k] + w[k]`, `y[k] = H x[k] + v[k]` with `E[w w'] = Q`, `E[v v] = R`, `E[w v] = S`.
 ///
@@ -69,11 +50,14 @@ pub struct StateSpace {
     pub initial: DMatrix<f64>,
     /// The bank that stands for flicker, where there is some.
     pub flicker: Option<FlickerBank>,
-    /// Shortest and longest averaging time, s, for which the system was built.
+    /// Shortest and longest averaging time, s, between which the system has the Allan variance of the
+    /// words.
     pub tau_range_s: [f64; 2],
     /// The terms it stands for.
     terms: Mix,
     sine: Option<Sine>,
+    /// What stands for the white noise of words that are smoothed otherwise than by one pole.
+    taps: Option<Taps>,
 }
 
 impl StateSpace {
@@ -85,12 +69,15 @@ impl StateSpace {
             .filter(|&term| term != INVERSE_SQUARE && term != WHITE)
             .map(|term| mix.squares[term] * column(term, tau_s, mix.correlation_time))
             .sum();
-        let fast = match Lag::of(mix) {
-            Some(lag) => {
+        let fast = match (&self.taps, Lag::of(mix)) {
+            (Some(taps), _) => {
+                taps.allan_variance(interval::round_to_count(tau_s / self.sample_period_s))
+            }
+            (None, Some(lag)) => {
                 let variance = lag.variance();
                 variance * column(CORRELATED, tau_s, Some(lag.time_s))
             }
-            None => [WHITE, INVERSE_SQUARE]
+            (None, None) => [WHITE, INVERSE_SQUARE]
                 .map(|term| mix.squares[term] * column(term, tau_s, None))
                 .iter()
                 .sum(),
@@ -118,6 +105,7 @@ impl StateSpace {
             tau_range_s: terms.tau_range_s,
             terms: terms.mix,
             sine: terms.sine,
+            taps: terms.taps,
         };
         let mut first = 0;
         for block in blocks {
@@ -147,6 +135,7 @@ struct Terms {
     sine: Option<Sine>,
     flicker: Option<FlickerBank>,
     tau_range_s: [f64; 2],
+    taps: Option<Taps>,
 }
 
 /// White noise behind a bandwidth that the shortest averaging times of a fit still see.
@@ -176,7 +165,9 @@ impl Lag {
 ///
 /// Exponentially correlated states are stationary, the bias starts at zero, the ramp has the variance
 /// `R^2`. Words that a loop or a filter has made smooth (negative `1/tau^2` part) have their white noise
-/// behind one pole, those of a counter a state for the angle's rounding.
+/// behind one pole, those of a counter a state for the angle's rounding. Where the words show another Allan
+/// variance than that at the averaging times below the fit, as behind a mean, their white noise is weighed
+/// over some words; what such a system does not reach either is left out of its range.
 ///
 /// # Errors
 /// The reason, where the words count pulses, or the channel has no noise fit or one that does not describe its curve.
@@ -212,7 +203,42 @@ pub fn noise_state_space(channel: &ChannelMetrics) -> Result<StateSpace, Unavail
         TAU_MIN_SAMPLES * sample_period_s,
         TAU_MAX_PER_RECORD * samples * sample_period_s,
     ];
-    Ok(system(mix, sine, sample_period_s, tau_range_s))
+    let built = |taps| system(mix, sine, taps, sample_period_s, tau_range_s);
+    let shown = Shown {
+        autocovariance: fast_autocovariance(channel, &mix, sine, sample_period_s),
+        points,
+        fit_from_s: range.tau_min_s,
+    };
+    let white_variance = mix.squares[WHITE] / sample_period_s;
+    let mut best = shown.best(built(None), |taps| built(Some(taps)), white_variance);
+    best.tau_range_s[0] = best.tau_range_s[0].max(shown.holds_from_s(&best));
+    Ok(best)
+}
+
+/// Autocovariance of the words without what their correlated noise and their sine have of it.
+fn fast_autocovariance(
+    channel: &ChannelMetrics,
+    mix: &Mix,
+    line: Option<Sine>,
+    sample_period_s: f64,
+) -> Vec<f64> {
+    let products = channel
+        .curve(&AUTOCOVARIANCE)
+        .and_then(|it| PRODUCT.get(it));
+    let other = |lag: usize| {
+        let time_s = lag as f64 * sample_period_s;
+        let correlated = mix.correlation_time.map_or(0.0, |correlation_s| {
+            mix.squares[CORRELATED] * (-time_s / correlation_s).exp()
+        });
+        let sine = line.map_or(0.0, |line| {
+            let turn = std::f64::consts::TAU * time_s / line.period_s.value;
+            0.5 * line.amplitude_deg_per_h.value.powi(2) * turn.cos()
+        });
+        correlated + sine
+    };
+    let products = products.map(|it| it.to_vec()).unwrap_or_default();
+    let rest = products.iter().enumerate();
+    rest.map(|(lag, product)| product - other(lag)).collect()
 }
 
 /// The curve that the terms were fitted to.
@@ -233,19 +259,26 @@ fn curve(channel: &ChannelMetrics) -> Option<Vec<AllanPoint>> {
     Some(points.collect())
 }
 
-fn system(mix: Mix, line: Option<Sine>, sample_period_s: f64, tau_range_s: [f64; 2]) -> StateSpace {
+fn system(
+    mix: Mix,
+    line: Option<Sine>,
+    taps: Option<Taps>,
+    sample_period_s: f64,
+    tau_range_s: [f64; 2],
+) -> StateSpace {
     let period = sample_period_s;
     let mut blocks = Vec::new();
     let [density, inverse_square] = [WHITE, INVERSE_SQUARE].map(|term| mix.squares[term]);
-    match Lag::of(&mix) {
-        Some(lag) => {
+    match (&taps, Lag::of(&mix)) {
+        (Some(taps), _) => blocks.push(taps.block()),
+        (None, Some(lag)) => {
             let holds = "white noise behind the bandwidth of the words";
             let state = State::new("angle_random_walk", "deg/h", holds);
             blocks.push(exponential(state, lag.variance(), lag.time_s, period));
         }
-        None => blocks.push(white(density, period)),
+        (None, None) => blocks.push(white(density, period)),
     }
-    if inverse_square > 0.0 {
+    if inverse_square > 0.0 && taps.is_none() {
         blocks.push(quantisation(inverse_square / 3.0, period));
     }
     let [shortest, longest] = tau_range_s;
@@ -280,6 +313,7 @@ fn system(mix: Mix, line: Option<Sine>, sample_period_s: f64, tau_range_s: [f64;
         sine: line,
         flicker,
         tau_range_s,
+        taps,
     };
     StateSpace::of(&blocks, period, terms)
 }
@@ -352,7 +386,7 @@ mod tests {
             (mix(&[(WHITE, 1e-9)], None), Some(line())),
         ];
         for (mix, line) in cases {
-            let system = system(mix, line, PERIOD_S, [2.0 * PERIOD_S, 30.0]);
+            let system = system(mix, line, None, PERIOD_S, [2.0 * PERIOD_S, 30.0]);
             for m in [1, 2, 5, 30, 200, 1000] {
                 let wanted = system
                     .allan_deviation_deg_per_h(m as f64 * PERIOD_S)
@@ -373,6 +407,7 @@ mod tests {
     fn flicker_is_within_three_percent_from_two_words_to_a_tenth_of_the_record() {
         let system = system(
             mix(&[(FLICKER, 0.09)], None),
+            None,
             None,
             PERIOD_S,
             [2.0 * PERIOD_S, 36.0],
@@ -398,7 +433,7 @@ mod tests {
             ],
             None,
         );
-        let system = system(all, None, PERIOD_S, [2.0 * PERIOD_S, 60.0]);
+        let system = system(all, None, None, PERIOD_S, [2.0 * PERIOD_S, 60.0]);
         let n = system.states.len();
         let mut joint = DMatrix::zeros(n + 1, n + 1);
         joint

@@ -385,7 +385,7 @@ fn rate_point(record: &Record, range: Range<usize>) -> RatePoint {
     let output = &record.channel_deg_per_h[range.clone()];
     let blocks = equal_block_means(output, DWELL_BLOCKS);
     RatePoint {
-        input_deg_per_h: interval::mean(&record.truth_deg_per_h[range]),
+        input_deg_per_h: record.truth_deg_per_h.cut(range).mean(),
         output_deg_per_h: interval::mean(output),
         deviation_deg_per_h: (interval::sample_variance(&blocks) / blocks.len() as f64).sqrt(),
         degrees_of_freedom: blocks.len() as f64 - 1.0,

@@ -346,6 +346,7 @@ mod tests {
     use crate::metrics::record::Record;
     use crate::metrics::{Estimate, measure};
     use crate::random::Streams;
+    use crate::signal::Rates;
 
     const PERIOD_S: f64 = 0.01;
 
@@ -383,7 +384,7 @@ mod tests {
         let record = Record {
             channel_deg_per_h: words,
             raw_deg_per_h: words,
-            truth_deg_per_h: &[],
+            truth_deg_per_h: Rates::UNKNOWN,
             response_deg_per_h: &[],
             encoder_rad: None,
             sample_period_s: PERIOD_S,

@@ -96,6 +96,8 @@ pub struct Lookalikes {
     pub one_pole_time_constant_s: f64,
     /// Length of the mean that does it on white noise, s: twice its delay.
     pub mean_length_s: f64,
+    /// Averaging time at which the figures were read, s.
+    averaging_time_s: f64,
 }
 
 impl Claim {
@@ -116,29 +118,33 @@ impl Claim {
                 dc_gain: ratio,
                 one_pole_time_constant_s: of(&|x| self.figure.left_by_one_pole(x)),
                 mean_length_s: of(&|l| self.figure.left_by_mean(l)),
+                averaging_time_s: self.averaging_time_s,
             }
         })
     }
 }
 
 impl Lookalikes {
-    /// Taps of the mean at a rate of words, the nearest whole number, at least 2.
+    /// Taps of the mean at a rate of words, the nearest whole number; nothing where fewer than two come near,
+    /// or the averaging time is shorter than a word.
     ///
     /// m words at the rate f leave `1 - (m - 1/m) / (2 tau f)` of the Allan variance: `m - 1/m` stands
     /// where the mean over a time has `L f`. The same holds for the variance of means with a third.
     #[must_use]
-    pub fn mean_taps(&self, rate_hz: f64) -> f64 {
+    pub fn mean_taps(&self, rate_hz: f64) -> Option<f64> {
         let words = 0.5 * self.mean_length_s * rate_hz;
-        (words + words.hypot(1.0)).round().max(2.0)
+        let taps = (words + words.hypot(1.0)).round();
+        (taps >= 2.0 && self.averaging_time_s * rate_hz >= 1.0 - 1e-9).then_some(taps)
     }
 
-    /// Delay of that mean, s: that of the middle of its taps.
+    /// Delay of that mean, s: that of the middle of its taps, or of its length.
     #[must_use]
     pub fn mean_delay_s(&self, rate_hz: Option<f64>) -> f64 {
-        match rate_hz {
-            Some(rate_hz) => 0.5 * (self.mean_taps(rate_hz) - 1.0) / rate_hz,
-            None => 0.5 * self.mean_length_s,
-        }
+        let of_taps = rate_hz.and_then(|rate_hz| {
+            let taps = self.mean_taps(rate_hz)?;
+            Some(0.5 * (taps - 1.0) / rate_hz)
+        });
+        of_taps.unwrap_or(0.5 * self.mean_length_s)
     }
 
     /// Half-power frequency of the one-pole low pass, Hz.
@@ -294,9 +300,21 @@ mod tests {
         // A mean of m of 1000 words in a second leaves 1 - (m - 1/m) / 2000 of the Allan variance.
         for m in [2.0_f64, 3.0, 10.0, 999.0] {
             let found = arw(1.0, (1.0 - (m - m.recip()) / 2000.0).sqrt());
-            assert!((found.mean_taps(1000.0) - m).abs() < 1e-9, "{m} {found:?}");
+            let taps = found.mean_taps(1000.0).unwrap();
+            assert!((taps - m).abs() < 1e-9, "{m} {found:?}");
             assert!((found.mean_delay_s(Some(1000.0)) - (m - 1.0) / 2000.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn words_that_are_too_slow_have_no_taps() {
+        // Two words in a second leave half of the deviation, not 98 %; of ten seconds each nothing is read at 1 s.
+        let found = arw(1.0, 0.98);
+        assert_eq!(found.mean_taps(1.0), None);
+        let delay_s = found.mean_delay_s(Some(1.0));
+        assert!((delay_s - 0.5 * found.mean_length_s).abs() < 1e-15);
+        assert_eq!(arw(1.0, 0.01).mean_taps(0.1), None);
+        assert_eq!(arw(1.0, 0.5).mean_taps(1.0), Some(2.0));
     }
 
     #[test]

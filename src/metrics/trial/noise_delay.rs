@@ -1,7 +1,7 @@
 //! A filter on the noise-delay plane: its bound, the curve of it, and how far above it stands.
 
 use crate::metrics::estimate::influence::{Learned, Spread, resampled, spread};
-use crate::metrics::estimate::interval;
+use crate::metrics::estimate::interval::{self, NORMAL_QUANTILE};
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
 use crate::metrics::estimate::value::Estimate;
@@ -199,8 +199,8 @@ impl OverBound<'_> {
     /// Of given weights w gain and bound follow from the same autocovariance R of raw.
     ///
     /// A filter near its bound hardly moves with R. What is left is what the channel has beside `w'Rw`: the
-    /// words that the ends of a block cut off, which the next block takes back, so that of n blocks the
-    /// record as a whole has the ends of one, `1/n` of what a block has of its variance.
+    /// words that the ends of a record cut off. A block alone is such a record, and of n blocks the whole has
+    /// the ends of one, `1/n^2` of their variance.
     fn of_given(&self, value: f64, bound: f64, response: &[f64]) -> Estimate {
         let of_raw = |raw: &[f64]| noise_power_gain(response, raw);
         let left_out = self.without_blocks(|_, raw| of_raw(raw));
@@ -226,25 +226,36 @@ impl OverBound<'_> {
 
 /// Adds what the uncertain delay does to the bound to the interval of the noise gain over it.
 ///
-/// The scatter of the noise is in that interval already, where numerator and bound share it; of the
-/// bound's own interval only what exceeds it comes on top, in quadrature.
-pub(crate) fn widen_over_bound(bound: &Estimate, left_out: &[f64], metrics: &mut ChannelMetrics) {
+/// * `bound`: at a delay in samples; nothing where there is none.
+///
+/// A filter with the delay that its taps have the least noise at stands where the bound does not change
+/// with the delay to first order. There the slope at the delay that was found is all noise, and its square
+/// holds twice what the curvature does: of `b(t) = c t^2` about the lowest point, with t of the variance
+/// `s^2`, the slope gives `(2 c t s)^2`, in the mean `4 c^2 s^4`, and the bound scatters by `2 c^2 s^4`.
+pub(crate) fn widen_over_bound(
+    delay_samples: &Estimate,
+    bound: impl Fn(f64) -> Option<LeastNoise>,
+    metrics: &mut ChannelMetrics,
+) {
     let Some(metric) = metrics.get_mut(&NOISE_GAIN_OVER_BOUND) else {
         return;
     };
-    let colour = interval::jackknife(bound.value, left_out).high - bound.value;
-    let by_delay = |half_width: f64| {
-        let rest = (half_width * half_width - colour * colour).max(0.0).sqrt();
-        rest / bound.value * metric.estimate.value
+    let error = Spread::of(delay_samples).variance.sqrt();
+    let beside = [-error, 0.0, error].map(|off| bound(delay_samples.value + off));
+    let [Some(before), Some(at), Some(behind)] = beside.map(|least| least.map(|it| it.noise_gain))
+    else {
+        return;
     };
-    let below = by_delay(bound.high - bound.value);
-    let above = by_delay(bound.value - bound.low);
+    let by_slope = (0.5 * (behind - before)).powi(2);
+    let by_curvature = 0.5 * (behind + before - 2.0 * at).powi(2);
+    let by_delay = (by_slope - by_curvature).max(by_curvature);
     let Estimate {
         value, low, high, ..
     } = metric.estimate;
+    let by_delay = NORMAL_QUANTILE * by_delay.sqrt() / at * value;
     metric.estimate = Estimate::with_interval(
         value,
-        (value - below.hypot(value - low)).max(0.0),
-        value + above.hypot(high - value),
+        (value - by_delay.hypot(value - low)).max(0.0),
+        value + by_delay.hypot(high - value),
     );
 }

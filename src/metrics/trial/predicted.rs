@@ -122,12 +122,11 @@ fn measure_bound(
         .iter()
         .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
         .collect();
-    let bound = of.bound.clone().map(|least| {
-        let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
-        (least.over_delay(delay, at, &bounds), least)
-    });
-    if let (Ok((bound, _)), None) = (&bound, &over) {
-        widen_over_bound(bound, &bounds, metrics);
+    let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
+    let bound = of.bound.clone();
+    let bound = bound.map(|least| (least.over_delay(delay, at, &bounds), least));
+    if over.is_none() {
+        widen_over_bound(delay, at, metrics);
     }
     put_bound(bound, facts, delay.value, record.sample_period_s, metrics);
 }

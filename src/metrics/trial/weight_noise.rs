@@ -1,9 +1,12 @@
 //! Allan deviation of a filter's output over raw's: well beyond its memory, where only the wandering of its
 //! weights changes it, and inside, where smoothing does.
 
+use std::ops::Range;
+
 use super::dc_gain::{DC_GAIN, dc_gain_lack};
 use crate::metrics::allan::overlapping::{NoiseType, degrees_of_freedom};
 use crate::metrics::estimate::blocks::samples_in;
+use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::reason::Unavailable;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -57,7 +60,9 @@ const AVERAGING_TIMES_PER_BLOCK: usize = 4;
 /// restores. The averaging time must be long against the taps: at a few samples the ratio shows the
 /// filter's smoothing instead.
 ///
-/// Interval: jackknife over blocks of time, output and raw leaving together. Source: derived.
+/// Interval: jackknife over blocks of time, output and raw leaving together. A filter gives a difference of
+/// raw back by its delay later: raw's blocks lie that much earlier, as else each end of a block would count
+/// for what the next block takes back; the ends of the record are added. Source: derived.
 pub(crate) fn measure_weight_noise(
     record: &Record,
     facts: &FilterFacts,
@@ -97,7 +102,7 @@ fn beyond_memory(
         )
         .into());
     }
-    Ok((dc_gain, m, restored_ratio(record, dc_gain, m)?))
+    Ok((dc_gain, m, restored_ratio(record, facts, dc_gain, m)?))
 }
 
 /// Enters `allan_ratio_inside_memory`: the same ratio at 1 s, where the filter reaches into it.
@@ -140,7 +145,7 @@ fn inside_memory(
             format!("an averaging time of 1 s has no {FREEDOM_MIN} degrees of freedom").into(),
         );
     }
-    restored_ratio(record, dc_gain, m)
+    restored_ratio(record, facts, dc_gain, m)
 }
 
 /// DC gain by which an output can be restored.
@@ -165,38 +170,70 @@ fn is_supported(count: usize, m: usize) -> bool {
 }
 
 /// `ADEV(output) / (DC gain ADEV(raw))` at `m` samples, or that the raw channel has no noise.
-fn restored_ratio(record: &Record, dc_gain: f64, m: usize) -> Result<Estimate, Unavailable> {
-    let count = record.raw_deg_per_h.len();
+fn restored_ratio(
+    record: &Record,
+    facts: &FilterFacts,
+    dc_gain: f64,
+    m: usize,
+) -> Result<Estimate, Unavailable> {
+    let (own, raw) = (record.channel_deg_per_h, record.raw_deg_per_h);
+    let count = raw.len();
     let blocks = (count / (AVERAGING_TIMES_PER_BLOCK * m)).clamp(BLOCKS_MIN, BLOCKS_MAX);
-    let own = second_difference_squares(record.channel_deg_per_h, m, blocks);
-    let raw = second_difference_squares(record.raw_deg_per_h, m, blocks);
-    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
+    let all = 0..(count + 1).saturating_sub(2 * m);
+    let sum = |values: &[f64]| -> f64 {
+        let blocks = second_difference_squares(values, m, all.clone(), blocks);
+        blocks.iter().sum()
+    };
+    let (own_sum, raw_sum) = (sum(own), sum(raw));
     let scatter = (raw_sum / count as f64).sqrt() / m as f64;
-    if scatter <= 1e-12 * interval::mean(record.raw_deg_per_h).abs() || raw_sum <= 0.0 {
+    if scatter <= 1e-12 * interval::mean(raw).abs() || raw_sum <= 0.0 {
         return Err("the raw channel has no noise".into());
     }
     let ratio = |own: f64, raw: f64| (own / raw).max(0.0).sqrt() / dc_gain;
+    let value = ratio(own_sum, raw_sum);
+    let delay = facts.delay_at_dc_samples().clamp(0.0, all.end as f64 / 4.0);
+    let whole = interval::round_to_count(delay.floor());
+    let later = (whole + 1).min(all.end);
+    let own = second_difference_squares(own, m, later..all.end, blocks);
+    let [near, far] = [whole, whole + 1].map(|shift| {
+        let shifted = later.saturating_sub(shift)..all.end.saturating_sub(shift);
+        second_difference_squares(raw, m, shifted, blocks)
+    });
+    let part = delay - delay.floor();
+    let raw: Vec<f64> = near
+        .iter()
+        .zip(&far)
+        .map(|(near, far)| (1.0 - part) * near + part * far)
+        .collect();
+    let (own_sum, raw_sum): (f64, f64) = (own.iter().sum(), raw.iter().sum());
     let left_out: Vec<f64> = own
         .iter()
         .zip(&raw)
         .map(|(own, raw)| ratio(own_sum - own, raw_sum - raw))
         .collect();
-    let estimate = interval::jackknife(ratio(own_sum, raw_sum), &left_out);
-    let low = estimate.low.max(0.0);
-    Ok(Estimate::with_interval(estimate.value, low, estimate.high))
+    // At either end of the record as many squares as the delay are of one channel alone, alike next to
+    // each other; the square of a normal number has twice the square of its mean as its variance.
+    let ends = Spread::known((value * delay / all.end as f64).powi(2));
+    let spread = spread(&left_out, None).plus(ends);
+    let estimate = spread.about(value);
+    Ok(estimate.clamped(0.0, f64::INFINITY))
 }
 
-/// Sums, block by block of their first sample, of the squared differences between the sums of `m`
-/// samples and of the `m` before: the terms of the overlapping Allan variance.
+/// Sums, in blocks of the differences that start in a range, of the squared differences between the sums of
+/// `m` samples and of the `m` before: the terms of the overlapping Allan variance.
 ///
 /// The difference slides by `x[k+2m] - 2x[k+m] + x[k]` and starts afresh in every block, so that
 /// rounding does not pile up and no angle has to be stored.
-fn second_difference_squares(values: &[f64], m: usize, blocks: usize) -> Vec<f64> {
-    let differences = (values.len() + 1).saturating_sub(2 * m);
+fn second_difference_squares(
+    values: &[f64],
+    m: usize,
+    starts: Range<usize>,
+    blocks: usize,
+) -> Vec<f64> {
     (0..blocks)
         .map(|block| {
-            let start = differences * block / blocks;
-            let end = differences * (block + 1) / blocks;
+            let start = starts.start + starts.len() * block / blocks;
+            let end = starts.start + starts.len() * (block + 1) / blocks;
             if start == end {
                 return 0.0;
             }
@@ -221,7 +258,9 @@ mod tests {
     fn sliding_differences_are_those_of_the_allan_variance() {
         let values: Vec<f64> = (0..5000).map(|k| f64::from((k * k) % 1013)).collect();
         for (m, blocks) in [(1, 3), (7, 20), (300, 4)] {
-            let sum: f64 = second_difference_squares(&values, m, blocks).iter().sum();
+            let starts = 0..values.len() + 1 - 2 * m;
+            let squares = second_difference_squares(&values, m, starts, blocks);
+            let sum: f64 = squares.iter().sum();
             let point = overlapping_allan_at(&values, 1.0, &[m])[0];
             let m_f = m as f64;
             let variance = sum / (2.0 * m_f * m_f * point.count as f64);

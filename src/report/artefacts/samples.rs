@@ -87,7 +87,7 @@ pub(super) fn channels_behind_raw_as_csv<'a>(
 pub(super) fn truths<'a>(row: &Artefact, samples: &Samples<'a, '_>) -> Vec<OutputFile<'a>> {
     let gyros = samples.npy().iter();
     gyros
-        .map(|gyro| npy(row.named(gyro.prefix), gyro.truth_deg_per_h))
+        .map(|gyro| npy(row.named(gyro.prefix), gyro.truth_deg_per_h.words()))
         .collect()
 }
 

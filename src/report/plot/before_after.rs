@@ -23,7 +23,7 @@ const BAND_OPACITY: f64 = 0.5;
 /// One row for each channel of a gyro whose words are compensated: raw, compensated, each filter.
 pub(in crate::report) fn picture(report: &RunReport, signals: &RunSignals) -> Option<Picture> {
     report.compensation?;
-    let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
+    let truth = &signals.truth_deg_per_h.from(signals.first_measured).words();
     let measured = report.measured();
     let channels = series(&measured, signals);
     let rows: Vec<&Series> = channels

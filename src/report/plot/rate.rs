@@ -6,7 +6,7 @@ use super::drawing::picture::{Picture, Point};
 use super::drawing::series::{Series, columns, extent, index, real, series, truth_stroke};
 use crate::report::record::measured::Measured;
 use crate::scenario::{MotionClass, MotionConfig};
-use crate::signal::RunSignals;
+use crate::signal::{Rates, RunSignals};
 use crate::units::s_to_ms;
 use crate::wording::to_digits;
 
@@ -33,8 +33,7 @@ pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Opt
         return None;
     }
     // Empty where nobody knows it.
-    let truth = signals.truth_deg_per_h.get(signals.first_measured..);
-    let truth = truth.unwrap_or(&[]);
+    let truth = signals.truth_deg_per_h.from(signals.first_measured);
     let drawing = Drawing {
         channels,
         truth,
@@ -59,7 +58,7 @@ pub(in crate::report) fn picture(report: &Measured, signals: &RunSignals) -> Opt
 /// Samples of the readable window of a motion, with its name; none where means say more.
 fn window(
     motion: &MotionConfig,
-    truth: &[f64],
+    truth: Rates,
     samples: usize,
     period_s: f64,
 ) -> Option<(std::ops::Range<usize>, String)> {
@@ -76,7 +75,8 @@ fn window(
             Some((0..length, name))
         }
         MotionClass::Steps(_) => {
-            let step = (1..truth.len())
+            let truth = truth.words();
+            let step = (1_usize..truth.len())
                 .max_by(|a, b| {
                     let rise = |at: usize| (truth[at] - truth[at - 1]).abs();
                     rise(*a).total_cmp(&rise(*b)).then(b.cmp(a))
@@ -94,7 +94,7 @@ fn window(
 
 struct Drawing<'a> {
     channels: Vec<Series<'a>>,
-    truth: &'a [f64],
+    truth: Rates<'a>,
     samples: usize,
     period_s: f64,
     start_s: f64,
@@ -163,7 +163,7 @@ impl Drawing<'_> {
 
     /// Means over equal parts of the record: what the noise hides above.
     fn means(&self, picture: &mut Picture, frame: (f64, f64), legend: &mut Legend) {
-        let line_of = |values: &[f64]| -> Vec<(f64, f64)> {
+        let line_of = |values: Rates| -> Vec<(f64, f64)> {
             columns(values, MEANS)
                 .iter()
                 .filter(|column| column.mean.is_finite())
@@ -192,11 +192,11 @@ impl Drawing<'_> {
             .div_ceil(LINE_POINTS)
             .max(1);
         let time_ms = |index: usize| s_to_ms(real(index - range.start) * self.period_s);
-        let line_of = |values: &[f64]| -> Vec<(f64, f64)> {
+        let line_of = |values: Rates| -> Vec<(f64, f64)> {
             range
                 .clone()
                 .step_by(stride)
-                .filter_map(|index| Some((time_ms(index), *values.get(index)?)))
+                .filter_map(|index| Some((time_ms(index), values.get(index)?)))
                 .filter(|(_, value)| value.is_finite())
                 .collect()
         };
@@ -212,13 +212,13 @@ impl Drawing<'_> {
         picture: &mut Picture,
         frame: (f64, f64),
         (x, legend): (Axis, &mut Legend),
-        line_of: &dyn Fn(&[f64]) -> Vec<Point>,
+        line_of: &dyn Fn(Rates) -> Vec<Point>,
     ) {
         let truth = line_of(self.truth);
         let lines: Vec<_> = self
             .channels
             .iter()
-            .map(|channel| (line_of(channel.samples), channel.stroke))
+            .map(|channel| (line_of(channel.samples.into()), channel.stroke))
             .collect();
         let points = lines.iter().flat_map(|(line, _)| line).chain(&truth);
         let Some(y) = extent(points.map(|(_, rate)| *rate)) else {

@@ -28,7 +28,7 @@ pub(in crate::report) fn picture(
     signals: &RunSignals,
     frequency_hz: f64,
 ) -> Option<Picture> {
-    let truth = signals.truth_deg_per_h.get(signals.first_measured..)?;
+    let truth = &signals.truth_deg_per_h.from(signals.first_measured).words();
     let channels = series(measured, signals);
     let fold = Fold::new(truth, signals.sample_period_s, frequency_hz)?;
     let mut picture = Picture::new(WIDTH, 900.0);

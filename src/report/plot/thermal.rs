@@ -16,10 +16,10 @@ pub(in crate::report) fn picture(report: &RunReport, signals: &RunSignals) -> Op
     let record = signals.temperature.as_ref()?;
     let (_, raw) = signals.channels.iter().find(|(name, _)| *name == "raw")?;
     let first = signals.first_measured;
-    let (raw, truth) = (raw.get(first..)?, signals.truth_deg_per_h.get(first..)?);
+    let (raw, truth) = (raw.get(first..)?, signals.truth_deg_per_h.from(first));
     let error: Vec<f64> = raw
         .iter()
-        .zip(truth)
+        .zip(truth.iter())
         .map(|(word, rate)| word - rate)
         .collect();
     let time_s = |at: f64| (real(first + 1) + at) * signals.sample_period_s;
@@ -80,10 +80,7 @@ fn predicted(record: &TemperatureRecord, signals: &RunSignals) -> Vec<(f64, f64)
             let at = index(time_s / signals.sample_period_s);
             let last = signals.truth_deg_per_h.len().saturating_sub(1);
             let truth = signals.truth_deg_per_h.get(at.min(last));
-            (
-                *time_s,
-                bias + (scale - 1.0) * truth.copied().unwrap_or(0.0),
-            )
+            (*time_s, bias + (scale - 1.0) * truth.unwrap_or(0.0))
         })
         .collect()
 }

@@ -21,6 +21,9 @@
 // Clocks: RiL_loading 1, RiL_reading P*P, RiL_writing P, LRL_reading P, LRL_writing 1, GAIN_dividing
 // P, RFR_reading P*P+P, RFR_writing P(P+1)/2, RFR_mirroring P(P-1)/2, Out_reading P, Out_writing 1,
 // RFW_reading 1+P, RFW_writing P: 3P^2 + 7P + 4, one more after Idle; out_valid after 3P^2 + 5P + 3.
+// These are the clocks of units that are done at once. Each of them is a step, which lasts until every unit
+// that it asks for is done; nothing moves before. With slow units and IALPHA, RFR_writing takes three steps for
+// an element: the difference to P, its product to P, the rounding of that to RAMB.
 // Reset is synchronous and may come in any clock; P*P + 2P clocks of Clearing follow it.
 `default_nettype none
 
@@ -41,7 +44,9 @@ module rls_fixed_core #(
     parameter NI = 0,               // fraction bits of IALPHA
     parameter signed [63:0] DELTA  = 64'sd1,            // initial diagonal of R
     parameter signed [63:0] FLOOR  = 64'sd0,            // smallest diagonal element of R; 0: none
-    parameter DIV_LATENCY = 1
+    parameter ADD_LATENCY = 1,      // clocks of the adder, the rounding among them
+    parameter MUL_LATENCY = 1,      // clocks of the multiplier
+    parameter DIV_LATENCY = 1       // clocks of the divider
 ) (
     input  wire          clk,
     input  wire          rst,
@@ -49,14 +54,19 @@ module rls_fixed_core #(
     output wire          in_ready,
     input  wire [WX-1:0] x,
     input  wire [WD-1:0] d,
-    output wire          out_valid, // one clock
+    output reg           out_valid, // one clock
     output wire [WY-1:0] y,
     // One clock each: a word is stored that was beyond the ends of its signal; a denominator or a
     // diagonal element of R is stored that is not above zero.
     output wire          overflow,
     output wire          indefinite
 );
-    localparam AW = 128;            // exact values
+    localparam SPLIT = SCALES != 0 && (ADD_LATENCY > 1 || MUL_LATENCY > 1);
+    // Bits of a factor from RAMA and from RAMB, of a product, of a sum of products.
+    localparam WA = max(max(WX, WK), SPLIT ? WR : 0);
+    localparam WB = max(max(WR, WT), max(WW, WY));
+    localparam PW = WA + WB;
+    localparam CW = max(PW, NX + NT + 2) + $clog2(P + 1) + 1;
     localparam RA = $clog2(2 * P);
     localparam RB = $clog2(2 * P + P * P);
     localparam IB = P > 1 ? $clog2(P) : 1;
@@ -75,12 +85,14 @@ module rls_fixed_core #(
     /* verilator lint_on WIDTH */
 
     reg  [3:0]    state;
-    reg           second;           // RFR: second reading clock; RFW: error done; Clearing: R done
+    reg           second;           // RFR: second step of its kind; RFW: error done; Clearing: R done
+    reg           third;            // RFR_writing: difference and product are done
     reg  [IB-1:0] i, j, head;
     reg  [RB-1:0] element;          // R_ij, row by row; above the diagonal in RFR
     reg  [RB-1:0] mirror;           // R_ji
     reg  [RB-1:0] diagonal;         // R_ii
-    reg  signed [AW-1:0] p, acc;
+    reg  signed [PW-1:0] p;
+    reg  signed [CW-1:0] acc;
     reg  signed [MW-1:0] rr, den;
     reg  signed [WD-1:0] dd;
     reg  signed [WY-1:0] ee, yy;
@@ -89,12 +101,18 @@ module rls_fixed_core #(
     wire last_j = j == LAST;
     wire take   = (state == LOAD) & in_valid;
     wire dot    = (state == RIL_R) | (state == LRL_R) | (state == OUT_R);
+    // The first product of a sum has nothing to be added to.
+    wire add_req = (dot & (j != {IB{1'b0}})) | (state == RIL_W) | (state == LRL_W) | (state == OUT_W)
+                 | ((state == RFR_W) & (~second | third)) | ((state == RFW_R) & ~second) | (state == RFW_W);
+    wire mul_req = dot | ((state == RFR_R) & ~second) | ((state == RFW_R) & second)
+                 | ((state == RFR_W) & second & ~third);
     wire div_req = state == GAIN;
-    wire div_done;
-    wire stall  = div_req & ~div_done;
+    wire add_done, mul_done, div_done, mul_first;
+    wire stall  = (add_req & ~add_done) | (mul_req & ~mul_done) | (div_req & ~div_done);
     wire clear  = state == CLEAR;
-    // An element of R and its copy are done.
-    wire corrected = ((state == RFR_W) & (i == j)) | (state == RFR_M);
+    // An element of R is written, it and its copy are done.
+    wire writes    = (state == RFR_W) & (third | ~SPLIT);
+    wire corrected = (writes & (i == j)) | (state == RFR_M);
 
     wire [IB-1:0] one_i     = {{(IB-1){1'b0}}, 1'b1};
     wire [IB-1:0] head_next = head == LAST ? {IB{1'b0}} : head + one_i;
@@ -108,6 +126,7 @@ module rls_fixed_core #(
         if (rst) begin
             state    <= CLEAR;
             second   <= 1'b0;
+            third    <= 1'b0;
             i        <= {IB{1'b0}};
             j        <= {IB{1'b0}};
             head     <= LAST;
@@ -141,8 +160,11 @@ module rls_fixed_core #(
                     second <= ~second;
                     if (second) state <= RFR_W;
                 end
-                RFR_W, RFR_M:
-                    if (!corrected) state <= RFR_M;
+                RFR_W, RFR_M: begin
+                    second <= (state == RFR_W) & ~writes;
+                    third  <= (state == RFR_W) & ~writes & second;
+                    if ((state == RFR_W) & ~writes) state <= RFR_W;
+                    else if (!corrected) state <= RFR_M;
                     else if (!last_j) begin
                         j       <= j + one_i;
                         element <= element + 1'b1;
@@ -163,6 +185,7 @@ module rls_fixed_core #(
                         diagonal <= B_R;
                         state    <= OUT_R;
                     end
+                end
                 OUT_R: begin
                     j <= j_next;
                     if (last_j) state <= OUT_W;
@@ -209,7 +232,7 @@ module rls_fixed_core #(
             GAIN:  begin ra_addr = A_SECOND + i; rb_addr = B_T + i; end
             RFR_R: if (second) rb_addr = element;
                    else begin ra_addr = A_SECOND + i; rb_addr = B_T + j; end
-            RFR_W: rb_addr = element;
+            RFR_W: if (writes) rb_addr = element;
             RFR_M: rb_addr = mirror;
             OUT_R: begin ra_addr = slot; rb_addr = j; end
             RFW_R: if (second) begin ra_addr = A_SECOND + i; rb_addr = i; end
@@ -233,7 +256,7 @@ module rls_fixed_core #(
     wire signed [WX-1:0] x_word = x;
 
     wire ra_we = take | (div_req & ~stall) | (clear & second);
-    wire rb_we = (state == RIL_W) | (state == RFR_W) | (state == RFR_M) | (state == RFW_W) | clear;
+    wire rb_we = (((state == RIL_W) | writes | (state == RFW_W)) & ~stall) | (state == RFR_M) | clear;
     // Sign extension and cutting of constants.
     /* verilator lint_off WIDTH */
     wire signed [MW-1:0] delta_word = DELTA;
@@ -261,76 +284,112 @@ module rls_fixed_core #(
     localparam FE = ND > NY ? ND : NY;              // scale of d - y
     localparam UP = NK + NN > NT ? NK + NN - NT : 0;
     localparam DN = NT > NK + NN ? NT - NK - NN : 0;
+    localparam RB_W = max(WR + FR - NR, WK + WT + FR - SP);     // bits of the operands of R - k*t
+    localparam WB_W = max(WW + FW - NW, WK + WY + FW - SE);     // of W + k*e
+    localparam EB_W = max(WD + FE - ND, WY + FE - NY);          // of d - y
     /* verilator lint_off WIDTH */
-    wire signed [AW-1:0] a_wide = ra_rdata, b_wide = rb_rdata, e_wide = ee, rr_wide = rr;
-    wire signed [AW-1:0] d_wide = dd, y_wide = yy, den_wide = den;
+    wire signed [WA-1:0] a_word = ra_rdata;
+    wire signed [WB-1:0] b_word = rb_rdata, e_factor = ee, ia_factor = IALPHA;
+    wire signed [WA-1:0] p_factor = p;
+    wire signed [CW-1:0] p_term = p;
+    wire signed [RB_W-1:0] r_whole = rr, r_part = p;
+    wire signed [WB_W-1:0] w_whole = rr, w_part = p;
+    wire signed [EB_W-1:0] d_whole = dd, y_whole = yy;
+    wire signed [WT+UP-1:0] t_whole = $signed(rb_rdata[WT-1:0]);
+    wire signed [WN+DN-1:0] n_whole = $signed(den[WN-1:0]);
     /* verilator lint_on WIDTH */
-    wire signed [AW-1:0] product = a_wide * (state == RFW_R ? e_wide : b_wide);
-    wire signed [AW-1:0] sum     = acc + p;
-    wire signed [AW-1:0] r_exact = (rr_wide <<< (FR - NR)) - (p <<< (FR - SP));
-    wire signed [AW-1:0] w_exact = (rr_wide <<< (FW - NW)) + (p <<< (FW - SE));
-    wire signed [AW-1:0] e_exact = (d_wide <<< (FE - ND)) - (y_wide <<< (FE - NY));
+    wire signed [CW-1:0] sum = acc + p_term;
+    wire signed [PW-1:0] product;
+    wire                 scales = SPLIT & (state == RFR_W);
 
-    fx_store #(.FROM(NX + NR), .WIDTH(WT), .N(NT), .RND(RT), .SAT(ST)) store_t (
-        .a(sum), .q(t_word), .over(t_over));
-    fx_store #(.FROM(NX + NT), .WIDTH(WN), .N(NN), .RND(RN), .SAT(SN)) store_den (
-        .a(sum), .q(den_word), .over(den_over));
-    fx_store #(.FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_y (
-        .a(sum), .q(y_word), .over(y_over));
-    fx_store #(.FROM(FR), .WIDTH(WR), .N(NR), .RND(RR), .SAT(SR)) store_diff (
-        .a(r_exact), .q(r_diff), .over(diff_over));
-    fx_store #(.FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW)) store_w (
-        .a(w_exact), .q(w_word), .over(w_over));
-    fx_store #(.FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY)) store_e (
-        .a(e_exact), .q(e_word), .over(e_over));
+    fp_wait #(.LATENCY(MUL_LATENCY)) mul (
+        .clk(clk), .rst(rst), .req(mul_req), .take(~stall), .first(mul_first), .done(mul_done));
+    fx_mul #(.WA(WA), .WB(WB), .LATENCY(MUL_LATENCY)) multiply (
+        .clk(clk), .first(mul_first), .a(scales ? p_factor : a_word),
+        .b(scales ? ia_factor : state == RFW_R ? e_factor : b_word), .q(product));
+    /* verilator lint_off PINCONNECTEMPTY */
+    fp_wait #(.LATENCY(ADD_LATENCY)) add (
+        .clk(clk), .rst(rst), .req(add_req), .take(~stall), .first(), .done(add_done));
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    fx_sum #(.AW(room(CW, NX + NR, WT, NT)), .BW(CW), .FROM(NX + NR), .WIDTH(WT), .N(NT), .RND(RT), .SAT(ST),
+             .LATENCY(ADD_LATENCY)) store_t (
+        .clk(clk), .a(acc), .b(p_term), .q(t_word), .over(t_over));
+    fx_sum #(.AW(room(CW, NX + NT, WN, NN)), .BW(CW), .FROM(NX + NT), .WIDTH(WN), .N(NN), .RND(RN), .SAT(SN),
+             .LATENCY(ADD_LATENCY)) store_den (
+        .clk(clk), .a(acc), .b(p_term), .q(den_word), .over(den_over));
+    fx_sum #(.AW(room(CW, NX + NW, WY, NY)), .BW(CW), .FROM(NX + NW), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY),
+             .LATENCY(ADD_LATENCY)) store_y (
+        .clk(clk), .a(acc), .b(p_term), .q(y_word), .over(y_over));
+    fx_sum #(.AW(room(RB_W, FR, WR, NR)), .BW(RB_W), .FROM(FR), .WIDTH(WR), .N(NR), .RND(RR), .SAT(SR), .SUB(1),
+             .LATENCY(ADD_LATENCY)) store_diff (
+        .clk(clk), .a(r_whole <<< (FR - NR)), .b(r_part <<< (FR - SP)), .q(r_diff), .over(diff_over));
+    fx_sum #(.AW(room(WB_W, FW, WW, NW)), .BW(WB_W), .FROM(FW), .WIDTH(WW), .N(NW), .RND(RW), .SAT(SW),
+             .LATENCY(ADD_LATENCY)) store_w (
+        .clk(clk), .a(w_whole <<< (FW - NW)), .b(w_part <<< (FW - SE)), .q(w_word), .over(w_over));
+    fx_sum #(.AW(room(EB_W, FE, WY, NY)), .BW(EB_W), .FROM(FE), .WIDTH(WY), .N(NY), .RND(RY), .SAT(SY), .SUB(1),
+             .LATENCY(ADD_LATENCY)) store_e (
+        .clk(clk), .a(d_whole <<< (FE - ND)), .b(y_whole <<< (FE - NY)), .q(e_word), .over(e_over));
     generate
         if (SCALES != 0) begin : scaled
             /* verilator lint_off WIDTH */
-            wire signed [AW-1:0] diff_wide = r_diff;
-            wire signed [AW-1:0] ia_wide   = IALPHA;
+            wire signed [2*WR-1:0] diff_wide = r_diff;
+            wire signed [2*WR-1:0] ia_wide   = IALPHA;
+            wire signed [2*WR-1:0] grown     = SPLIT ? p : diff_wide * ia_wide;
             /* verilator lint_on WIDTH */
-            fx_store #(.FROM(NR + NI), .WIDTH(WR), .N(NR), .RND(RR), .SAT(SR)) store_r (
-                .a(diff_wide * ia_wide), .q(r_word), .over(r_over));
+            fx_sum #(.AW(room(2 * WR, NR + NI, WR, NR)), .BW(2 * WR), .FROM(NR + NI), .WIDTH(WR), .N(NR), .RND(RR),
+                     .SAT(SR), .LATENCY(ADD_LATENCY)) store_r (
+                .clk(clk), .a(grown), .b({2*WR{1'b0}}), .q(r_word), .over(r_over));
         end else begin : unscaled
             assign r_word = r_diff;
             assign r_over = 1'b0;
         end
     endgenerate
-    fx_div #(.WIDTH(WK), .RND(RK), .SAT(SK), .LATENCY(DIV_LATENCY)) div (
-        .clk(clk), .rst(rst), .req(div_req), .a(b_wide <<< UP), .b(den_wide <<< DN),
+    fx_div #(.AW(WT + UP), .BW(WN + DN), .WIDTH(WK), .RND(RK), .SAT(SK), .LATENCY(DIV_LATENCY)) div (
+        .clk(clk), .rst(rst), .req(div_req), .a(t_whole <<< UP), .b(n_whole <<< DN),
         .done(div_done), .q(k_word), .over(k_over));
+
+    function integer max(input integer a, input integer b);
+        max = a > b ? a : b;
+    endfunction
+    // Bits of a sum of operands of so many, with room for its rounding into a word.
+    function integer room(input integer bits, input integer from, input integer width, input integer n);
+        room = max(bits + 1 + (n > from ? n - from : 0), width + 1);
+    endfunction
 
     /* verilator lint_off WIDTH */
     wire signed [MW-1:0] den_mw = den_word;
+    wire signed [PW-1:0] diff_p = r_diff;
+    wire signed [CW-1:0] alpha = ALPHA;
     /* verilator lint_on WIDTH */
     always @(posedge clk)
         if (rst) begin
-            p   <= {AW{1'b0}};
-            acc <= {AW{1'b0}};
+            p   <= {PW{1'b0}};
+            acc <= {CW{1'b0}};
             rr  <= {MW{1'b0}};
             den <= {MW{1'b0}};
             dd  <= {WD{1'b0}};
             ee  <= {WY{1'b0}};
             yy  <= {WY{1'b0}};
-        end else begin
-            if (dot | ((state == RFR_R) & ~second) | ((state == RFW_R) & second)) p <= product;
-            if (dot) acc <= j != {IB{1'b0}} ? sum : state == LRL_R ? ALPHA : {AW{1'b0}};
+        end else if (!stall) begin
+            if (mul_req) p <= product;
+            else if (SPLIT & (state == RFR_W) & ~second) p <= diff_p;
+            if (dot) acc <= j != {IB{1'b0}} ? sum : state == LRL_R ? alpha : {CW{1'b0}};
             if (((state == RFR_R) | (state == RFW_R)) & second) rr <= rb_rdata;
             if (state == LRL_W) den <= den_mw;
             if (take) dd <= d;
             if ((state == RFW_R) & ~second) ee <= e_word;
             if (state == OUT_W) yy <= y_word;
         end
+    always @(posedge clk) out_valid <= ~rst & (state == OUT_W) & ~stall;
 
     assign in_ready  = state == LOAD;
-    assign out_valid = (state == RFW_R) & ~second;
     assign y         = yy;
-    assign overflow  = ((state == RIL_W) & t_over) | ((state == LRL_W) & den_over)
-                     | (div_req & div_done & k_over) | ((state == RFR_W) & (diff_over | r_over))
-                     | ((state == OUT_W) & y_over) | ((state == RFW_R) & ~second & e_over)
-                     | ((state == RFW_W) & w_over);
-    assign indefinite = ((state == LRL_W) & (den_word <= 0))
-                      | ((state == RFR_W) & (i == j) & (rm <= 0));
+    assign overflow  = (((state == RIL_W) & t_over) | ((state == LRL_W) & den_over)
+                        | (div_req & k_over) | ((state == RFR_W) & ~third & ~second & diff_over)
+                        | (writes & r_over) | ((state == OUT_W) & y_over)
+                        | ((state == RFW_R) & ~second & e_over) | ((state == RFW_W) & w_over)) & ~stall;
+    assign indefinite = (((state == LRL_W) & (den_word <= 0)) | (writes & (i == j) & (rm <= 0))) & ~stall;
 endmodule
 
 `default_nettype wire

@@ -15,7 +15,8 @@
 # Exit: 0 done, 1 synthesis or routing failed, 2 usage, 127 no yosys.
 #
 # resources.json: luts counts four-input tables (ecp5: two more for each carry cell; xilinx: tables of
-# any size), lut_rams the cells of distributed memory; fmax_mhz is the router's estimate.
+# any size), lut_rams the cells of distributed memory; fmax_mhz is the router's estimate; fits is false where
+# the router found no place for a cell (ecp5: LFE5U-85F, ice40: HX8K).
 set -eu
 
 device=@DEVICE@
@@ -36,7 +37,7 @@ if ! command -v "$yosys" > /dev/null 2>&1; then
 fi
 case "$device" in
     ecp5) options="" router=${NEXTPNR:-nextpnr-ecp5} part="--85k --package CABGA756" ;;
-    ice40) options="-dsp" router=${NEXTPNR:-nextpnr-ice40} part="--up5k --package sg48" ;;
+    ice40) options="" router=${NEXTPNR:-nextpnr-ice40} part="--hx8k --package ct256" ;;
     *) options="" router="" part="" ;;
 esac
 seed=${SEED:-1}
@@ -50,7 +51,7 @@ cd "$build"
 # Latches are refused: they would be a path around the clock.
 if ! "$yosys" -q -p "read_verilog -DSYNTHESIS $sources; hierarchy -check -top $top; proc; \
     select -assert-none t:\$dlatch; synth_$device -top $top $options; \
-    hierarchy -check -top $top; write_json $top.json; tee -o stat.txt stat" > log 2>&1; then
+    delete t:\$scopeinfo; hierarchy -check -top $top; write_json $top.json; tee -o stat.txt stat" > log 2>&1; then
     cat log >&2
     exit 1
 fi
@@ -77,13 +78,17 @@ case "$device" in
        lut_rams=$(count 'RAM[0-9]+[A-Z0-9]*' 1) block_rams=$(count 'RAMB.*' 1) ;;
 esac
 
-fmax=null
+# A filter that the device does not hold is no error: fits says so.
+fmax=null fits=true
 if [ "${ROUTE:-1}" != 0 ] && [ -n "$router" ] && command -v "$router" > /dev/null 2>&1; then
     # shellcheck disable=SC2086
     if ! "$router" $part --json "$top.json" --seed "$seed" --freq "${FREQ:-50}" --timing-allow-fail \
         > route.log 2>&1; then
-        cat route.log >&2
-        exit 1
+        if ! grep -q 'no BELs remaining\|Unable to place\|unable to place\|too many\|Failed to place' route.log; then
+            cat route.log >&2
+            exit 1
+        fi
+        fits=false
     fi
     fmax=$(sed -n 's/.*Max frequency for clock.*: \([0-9.]*\) MHz.*/\1/p' route.log | tail -n 1)
 fi
@@ -97,6 +102,7 @@ cat > "$here/resources.json" << EOR
   "lut_rams": $lut_rams,
   "block_rams": $block_rams,
   "seed": $seed,
+  "fits": $fits,
   "fmax_mhz": ${fmax:-null}
 }
 EOR

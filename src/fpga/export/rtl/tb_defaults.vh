@@ -28,6 +28,12 @@
 `ifndef VEC_DIV_LATENCY
 `define VEC_DIV_LATENCY 1
 `endif
+`ifndef VEC_SCALES
+`define VEC_SCALES 0
+`endif
+`ifndef VEC_SPLIT
+`define VEC_SPLIT 0
+`endif
 // Bits of a top level's ports.
 `ifndef VEC_TOP_SAMPLE_BITS
 `define VEC_TOP_SAMPLE_BITS (`VEC_TOP_CODE != 0 ? 32 : `VEC_WIDTH)

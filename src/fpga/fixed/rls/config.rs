@@ -5,6 +5,7 @@ use crate::fpga::error::FpgaError;
 use crate::fpga::fixed::exact::{Exact, constant, scaled};
 use crate::fpga::fixed::format::{Format, Stored};
 use crate::fpga::fixed::taps::signal_formats;
+use crate::fpga::timing::Units;
 
 signal_formats! {
     /// Formats of the signals.
@@ -59,6 +60,7 @@ pub struct FixedRlsConfig {
     pub(super) forgetting_factor: f64,
     /// Smallest code of a diagonal element of R; 0: none.
     pub(super) floor: i64,
+    pub(super) units: Units,
 }
 
 impl FixedRlsConfig {
@@ -114,7 +116,28 @@ impl FixedRlsConfig {
             delta: code,
             forgetting_factor: alpha,
             floor: settings.inverse_floor,
+            units: Units::ONE_CLOCK,
         })
+    }
+
+    /// The same with units of other latencies: same words, more clocks.
+    ///
+    /// # Errors
+    /// [`FpgaError::CountOutOfRange`] naming the unit.
+    pub fn with_units(self, units: Units) -> Result<Self, FpgaError> {
+        units.check()?;
+        Ok(Self { units, ..self })
+    }
+
+    /// Latencies of the units; their intervals do not count, as the control waits for each result.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.units
+    }
+
+    /// Whether the correction of R takes three steps: difference, product with 1/alpha, its rounding.
+    pub(super) fn splits(&self) -> bool {
+        self.inverse_alpha.is_some() && !self.units.chain()
     }
 
     /// Number of weights p.
@@ -199,16 +222,27 @@ impl FixedRlsConfig {
 
     /// `Q_R(Q_R(R - k*t) * ialpha)`; the two of them, the second equal to the first at alpha = 1.
     pub(super) fn inverse(&self, element: i64, product: i128) -> [Stored; 2] {
-        let f = &self.formats;
-        let product_scale = f.gain.fraction_bits + f.intermediate.fraction_bits;
-        let scales = [f.inverse.fraction_bits, product_scale];
-        let corrected = f.inverse.store_sum([i128::from(element), -product], scales);
+        let corrected = self.inverse_difference(element, product);
         let Some(factor) = self.inverse_alpha else {
             return [corrected; 2];
         };
         let grown = i128::from(corrected.code) * i128::from(factor);
+        [corrected, self.inverse_grown(grown)]
+    }
+
+    /// `Q_R(R - k*t)`.
+    pub(super) fn inverse_difference(&self, element: i64, product: i128) -> Stored {
+        let f = &self.formats;
+        let product_scale = f.gain.fraction_bits + f.intermediate.fraction_bits;
+        let scales = [f.inverse.fraction_bits, product_scale];
+        f.inverse.store_sum([i128::from(element), -product], scales)
+    }
+
+    /// `Q_R` of a product of a word of R and 1/alpha.
+    pub(super) fn inverse_grown(&self, product: i128) -> Stored {
+        let f = &self.formats;
         let scale = f.inverse.fraction_bits + self.inverse_alpha_fraction_bits;
-        [corrected, f.inverse.store(grown, scale)]
+        f.inverse.store(product, scale)
     }
 
     /// `Q_W(W + k*e)`.

@@ -1,15 +1,15 @@
 //! What exports, timing and the bench must know of recursive least squares in fixed point.
 
+use super::clocks::{fixed_rls_stalled_clocks, fixed_rls_stalled_latency};
 use super::config::FixedRlsConfig;
 use super::engine::FixedRlsEngine;
-use super::machine::{
-    FixedRlsPipeline, FixedRlsState, fixed_rls_clocks_per_sample, fixed_rls_latency_clocks,
-};
+use super::machine::{FixedRlsPipeline, FixedRlsState};
 use crate::fpga::fixed::pipeline::{FixedEngine, FixedKind, FixedParameters, FixedPipeline};
 use crate::fpga::fixed::sequencer::FixedClocked;
 use crate::fpga::fixed::signal::Signal;
 use crate::fpga::fixed::taps::TapFormats;
 use crate::fpga::registers::ControlState as _;
+use crate::fpga::timing::Units;
 
 /// Recursive least squares.
 pub const RLS_FIXED: FixedKind = FixedKind {
@@ -25,6 +25,11 @@ pub const RLS_FIXED: FixedKind = FixedKind {
     has_gain_registers: false,
     has_matrix: true,
 };
+
+/// A count of clocks as large as an address; latencies end far below.
+fn clocks(count: u64) -> usize {
+    usize::try_from(count).unwrap_or(usize::MAX)
+}
 
 impl FixedPipeline for FixedRlsConfig {
     fn kind(&self) -> &'static FixedKind {
@@ -48,15 +53,32 @@ impl FixedPipeline for FixedRlsConfig {
     }
 
     fn clocks_per_sample(&self) -> usize {
-        fixed_rls_clocks_per_sample(self.tap_count)
+        clocks(self.stalled_clocks(self.units))
     }
 
     fn latency_clocks(&self) -> usize {
-        fixed_rls_latency_clocks(self.tap_count)
+        let forgets = self.inverse_alpha.is_some();
+        clocks(fixed_rls_stalled_latency(
+            self.tap_count,
+            forgets,
+            self.units,
+        ))
     }
 
     fn divisions(&self) -> usize {
         self.tap_count
+    }
+
+    fn units(&self) -> Units {
+        self.units
+    }
+
+    fn splits(&self) -> bool {
+        Self::splits(self)
+    }
+
+    fn stalled_clocks(&self, units: Units) -> u64 {
+        fixed_rls_stalled_clocks(self.tap_count, self.inverse_alpha.is_some(), units)
     }
 
     fn parameters(&self) -> FixedParameters {

@@ -7,6 +7,7 @@ use crate::fpga::fixed::registers::FixedRegisters;
 use crate::fpga::fixed::sequencer::{FixedMachine, FixedSequencer};
 use crate::fpga::memory::SinglePortRam;
 use crate::fpga::registers::control_states;
+use crate::fpga::timing::Units;
 
 control_states! {
     /// States of the control machine.
@@ -27,7 +28,8 @@ control_states! {
         GainDividing = "GAIN_dividing",
         /// Product `k_i t_j` in the first clock, element of R in the second.
         RfrReading = "RFR_reading",
-        /// The corrected element is written back.
+        /// The corrected element is written back; with slow units and 1/alpha the third step of the state,
+        /// after the difference and its product with 1/alpha.
         RfrWriting = "RFR_writing",
         /// The same word below the diagonal.
         RfrMirroring = "RFR_mirroring",
@@ -42,18 +44,6 @@ control_states! {
         /// After a reset: the words of both memories are written anew.
         Clearing = "Clearing",
     }
-}
-
-/// Clocks from one accepted sample to the next, back to back: `3p^2 + 7p + 4`.
-#[must_use]
-pub const fn fixed_rls_clocks_per_sample(tap_count: usize) -> usize {
-    3 * tap_count * tap_count + 7 * tap_count + 4
-}
-
-/// Clocks from accepting a sample until its result can be read: `3p^2 + 5p + 3`.
-#[must_use]
-pub const fn fixed_rls_latency_clocks(tap_count: usize) -> usize {
-    3 * tap_count * tap_count + 5 * tap_count + 3
 }
 
 /// The clocked pipeline. RAMA: ring of L, k. RAMB: W, t, R row by row.
@@ -91,6 +81,10 @@ impl FixedMachine for FixedRlsMachine {
 
     fn config(&self) -> &FixedRlsConfig {
         &self.config
+    }
+
+    fn units(&self) -> Units {
+        self.config.units
     }
 
     fn registers(&self) -> &FixedRegisters<FixedRlsState> {
@@ -191,7 +185,11 @@ impl FixedRlsMachine {
             product,
             ..
         } = self.registers;
-        let code = self.config.inverse(read_latch, product)[1].code;
+        let code = if self.config.splits() {
+            self.config.inverse_grown(product).code
+        } else {
+            self.config.inverse(read_latch, product)[1].code
+        };
         if i == j {
             self.config.floored(code)
         } else {
@@ -202,8 +200,13 @@ impl FixedRlsMachine {
     fn correct_write(&mut self, datapath: &mut FixedDatapath<'_>) {
         let p = self.config.tap_count;
         let FixedRegisters { i, j, .. } = self.registers;
+        if self.config.splits() && !self.registers.third {
+            return self.correct_early(datapath);
+        }
+        self.registers.second = false;
+        self.registers.third = false;
         datapath.count_sum();
-        if self.config.inverse_alpha.is_some() {
+        if self.config.inverse_alpha.is_some() && !self.config.splits() {
             datapath.count_product();
         }
         datapath.write_b(2 * p + i * p + j, self.corrected());
@@ -211,6 +214,26 @@ impl FixedRlsMachine {
             self.next_element();
         } else {
             self.registers.state = FixedRlsState::RfrMirroring;
+        }
+    }
+
+    /// The first two of three steps: the difference, then its product with 1/alpha, both to P.
+    fn correct_early(&mut self, datapath: &mut FixedDatapath<'_>) {
+        let FixedRegisters {
+            read_latch,
+            product,
+            ..
+        } = self.registers;
+        if self.registers.second {
+            self.registers.third = true;
+            // A word of R stands in P, so that nothing is cut off.
+            self.registers.product = product * i128::from(self.config.inverse_alpha.unwrap_or(0));
+            datapath.count_product();
+        } else {
+            self.registers.second = true;
+            let corrected = self.config.inverse_difference(read_latch, product);
+            self.registers.product = i128::from(corrected.code);
+            datapath.count_sum();
         }
     }
 

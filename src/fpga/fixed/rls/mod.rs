@@ -38,21 +38,27 @@
 //! | Out_reading, _writing | p, 1 | L_j | W_j | P, ACC; Y |
 //! | RFW_reading, _writing | 1+p, p | k_i | W_i; write W_i | E; P, RR |
 //!
-//! Interval: [`fixed_rls_clocks_per_sample`], latency: [`fixed_rls_latency_clocks`].
+//! With units of several clocks each of these is a step, which lasts as long as the slowest unit in use; the
+//! correction of R then takes three of them if alpha < 1: difference and product go to P, its rounding to RAMB.
+//!
+//! Interval: [`fixed_rls_clocks_per_sample`], latency: [`fixed_rls_latency_clocks`];
+//! with slow units [`fixed_rls_stalled_clocks`].
 //!
 //! Source: derived; the order of operations follows trials that run on 22 to 36 bits.
 //!
 //! Checked by `fixed_point`.
 
+mod clocks;
 mod config;
 mod declaration;
 mod engine;
 mod machine;
 
+pub use clocks::{
+    fixed_rls_clocks_per_sample, fixed_rls_latency_clocks, fixed_rls_stalled_clocks,
+    fixed_rls_stalled_latency,
+};
 pub use config::{FixedRlsConfig, FixedRlsSettings, RlsFormats};
 pub use declaration::RLS_FIXED;
 pub use engine::FixedRlsEngine;
-pub use machine::{
-    FixedRlsMachine, FixedRlsPipeline, FixedRlsState, fixed_rls_clocks_per_sample,
-    fixed_rls_latency_clocks,
-};
+pub use machine::{FixedRlsMachine, FixedRlsPipeline, FixedRlsState};

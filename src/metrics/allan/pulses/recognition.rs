@@ -108,8 +108,10 @@ impl PulseWords {
             });
         }
         let carries = carries(&used);
-        let is_told = best.is_none() || carries;
-        (is_told && hardly_moves(&used, step_arcsec)).then(|| Self {
+        // Pulses whose phase no averaging time loses, however far slow noise takes the angle.
+        let is_undecided = best.is_none() && (carries || hardly_moves(&used, step_arcsec));
+        let is_unmoved = carries && hardly_moves(&used, step_arcsec);
+        (is_undecided || is_unmoved).then(|| Self {
             sawtooth: sawtooth(0.0),
             agreement: None,
             carries,

@@ -3,7 +3,7 @@
 use super::picture::{BLACK, Colour, Dash, Shape, Stroke};
 use crate::metrics::ChannelMetrics;
 use crate::report::record::measured::Measured;
-use crate::signal::RunSignals;
+use crate::signal::{Rates, RunSignals};
 
 /// Colours that colour-blind readers tell apart (Okabe and Ito, 2008), raw first, then darker ones
 /// (Tol, 2021). Their number has no factor in common with that of the dashes.
@@ -125,17 +125,22 @@ pub(in crate::report::plot) struct Column {
 }
 
 /// The record cut into at most `columns` runs of equal length (the last may be shorter).
-pub(in crate::report::plot) fn columns(values: &[f64], columns: usize) -> Vec<Column> {
+pub(in crate::report::plot) fn columns<'a>(
+    values: impl Into<Rates<'a>>,
+    columns: usize,
+) -> Vec<Column> {
+    let values = values.into();
     let length = values.len().div_ceil(columns.max(1)).max(1);
     let mut start = 0.0;
-    values
-        .chunks(length)
-        .map(|run| {
+    (0..values.len())
+        .step_by(length)
+        .map(|first| {
+            let run = values.cut(first..(first + length).min(values.len()));
             let count = real(run.len());
             let column = Column {
                 index: start + 0.5 * (count - 1.0),
-                low: run.iter().copied().fold(f64::INFINITY, f64::min),
-                high: run.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                low: run.iter().fold(f64::INFINITY, f64::min),
+                high: run.iter().fold(f64::NEG_INFINITY, f64::max),
                 mean: run.iter().sum::<f64>() / count,
             };
             start += count;
