@@ -39,8 +39,8 @@ RLS_IMAGE = "b_at == 4 || b_at == 7 ? 9 : 0"
 
 def rls(latency, period, **parameters):
     return Core("rls_core", ("rls_core.v", "rls_ctrl.v", "den_check.v"),
-                {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.", ("add", "mul", "div"), "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE,
-                word_bits=32)
+                {"W": 32, "P": 2, "DELTA": 9} | parameters, "rls_ctrl.v", "ctrl.", ("add", "mul", "div"),
+                "state >= 4'd2 && state <= 4'd11 || out_valid", latency, period, image=RLS_IMAGE, word_bits=32)
 
 
 def lms(files, units, last, latency, period, absent=(), image="0", **parameters):
@@ -65,8 +65,8 @@ CORES = {
     "sign_lms": lms(SIGN_LMS, ("div",), 7, 7, 13, image="3", W=32, M=2, RECOMPUTE=4, W0=3),
     "rls, fixed point": Core(
         "rls_fixed_core", ("rls_fixed_core.v", "fx.v"),
-        FIXED | {"P": 2, "MW": 5, "WR": 5, "NR": 2, "ALPHA": 16, "DELTA": 9}, "rls_fixed_core.v", "", ("div",),
-        "state >= 4'd2 && state <= 4'd11 || state == 4'd12 && !second", 25, 30,
+        FIXED | {"P": 2, "MW": 5, "WR": 5, "NR": 2, "ALPHA": 16, "DELTA": 9}, "rls_fixed_core.v", "", ("add", "mul", "div"),
+        "state >= 4'd2 && state <= 4'd11 || out_valid", 25, 30,
         image=RLS_IMAGE,
         told="!second || state == 4'd7 || state >= 4'd12"),
     "nlms, fixed point": lms(LMS_FIXED, ("with_divider.div",), 6, 7, 13, N=2, NLMS=1, **FIXED),

@@ -37,10 +37,12 @@ module fp_div #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1) (
 endmodule
 
 module fx_div #(
-    parameter AW = 128, parameter WIDTH = 32, parameter RND = 1, parameter SAT = 1, parameter LATENCY = 1
+    parameter AW = 128, parameter BW = AW, parameter WIDTH = 32, parameter RND = 1,
+    parameter SAT = 1, parameter LATENCY = 1
 ) (
     input  wire                    clk, rst, req,
-    input  wire signed [AW-1:0]    a, b,
+    input  wire signed [AW-1:0]    a,
+    input  wire signed [BW-1:0]    b,
     output wire                    done,
     output wire signed [WIDTH-1:0] q,
     output wire                    over
@@ -50,4 +52,15 @@ module fx_div #(
     assign done  = req & go;
     assign q     = $anyseq;
     assign over  = $anyseq;
+endmodule
+
+// The handshake of a unit of fixed point, whose word is not left out.
+module fp_wait #(parameter LATENCY = 1) (
+    input  wire clk, rst, req, take,
+    output wire first, done
+);
+    wire   go    = $anyseq;
+    wire   waits = req & ~go;
+    assign first = $anyseq;
+    assign done  = req & go;
 endmodule

@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-PARTS = ["stream", "memory_ports", "control", "reset"]
+PARTS = ["stream", "memory_ports", "control", "reset", "samples"]
 
 
 def main():

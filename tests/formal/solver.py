@@ -22,6 +22,7 @@ class Trial:
     script: list  # of yosys, up to the design whose properties are asked for
     question: list  # arguments of yosys-smtbmc
     solver: str = "yices"
+    declarations: str = ""  # for the solver, in front of the design
     folder: Path = field(default=None)
 
 
@@ -49,7 +50,8 @@ def ask(scratch, trials):
         lines += [f"write_smt2 -wires {number}/design.smt2", "design -reset", "design -reset-vlog"]
     (scratch / "designs.ys").write_text("\n".join(lines) + "\n")
     run = subprocess.run([YOSYS, "-q", "designs.ys"], cwd=scratch, capture_output=True, text=True, check=False)
-    if run.returncode:
+    # What a wire connected by name decides would be lost with its driver.
+    if run.returncode or "has no driver" in run.stderr:
         sys.exit(f"yosys failed on {scratch}\n{run.stdout}{run.stderr}")
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         return list(workers.map(answer, trials))
@@ -57,6 +59,8 @@ def ask(scratch, trials):
 
 def answer(trial):
     """What the solver says of a trial; that it is missing or fails ends the run."""
+    design = trial.folder / "design.smt2"
+    design.write_text(trial.declarations + design.read_text())
     start = time.monotonic()
     run = subprocess.run([SMTBMC, "-s", trial.solver, *trial.question, "design.smt2"], cwd=trial.folder,
                          capture_output=True, text=True, check=False)

@@ -41,7 +41,7 @@ def trial(name, question, design):
               "proc", "flatten",
               *[f"connect -set dut_{register} \\dut.{register}" for register in REGISTERS],
               f"prep -top {TOP}", "async2sync", "chformal -lower"]
-    return Trial(name, sources, script, question)
+    return Trial(name, sources, script, question, "z3")
 
 
 def run(scratch):

@@ -59,10 +59,12 @@ module fp_div #(parameter W = 64, parameter FTZ = 0, parameter LATENCY = 1) (
 endmodule
 
 module fx_div #(
-    parameter AW = 128, parameter WIDTH = 32, parameter RND = 1, parameter SAT = 1, parameter LATENCY = 1
+    parameter AW = 128, parameter BW = AW, parameter WIDTH = 32, parameter RND = 1,
+    parameter SAT = 1, parameter LATENCY = 1
 ) (
     input  wire                    clk, rst, req,
-    input  wire signed [AW-1:0]    a, b,
+    input  wire signed [AW-1:0]    a,
+    input  wire signed [BW-1:0]    b,
     output wire                    done,
     output wire signed [WIDTH-1:0] q,
     output wire                    over
@@ -70,4 +72,13 @@ module fx_div #(
     assign q    = a[WIDTH-1:0] ^ {b[WIDTH-2:0], b[WIDTH-1]};
     assign over = ^a ^ ^b;
     assign done = req;
+endmodule
+
+// Units of fixed point have a handshake of their own.
+module fp_wait #(parameter LATENCY = 1) (
+    input  wire clk, rst, req, take,
+    output wire first, done
+);
+    assign first = 1'b1;
+    assign done  = req;
 endmodule
