@@ -276,7 +276,7 @@ fn yosys_knows_every_module_behind_the_stream_ports_and_maps_them() {
         let rtl = folder.path().join("rtl");
         let name = kind.replace("nlms", "lms").replace('-', "_");
         let (name, parts) = match is_fixed {
-            true => (format!("{name}_fixed"), "fx_front_end.v fx.v"),
+            true => (format!("{name}_fixed"), "fx_front_end.v fx.v fp_wait.v"),
             false => (name, float),
         };
         let sources = format!("{parts} {control}");
