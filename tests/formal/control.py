@@ -28,6 +28,8 @@ BUGS = [
      {"under_way_by_state", "result_of_a_sample"}),
     ("nlms", "lms_ctrl.v", "assign out_valid = (state == ERR) & ~stall", "assign out_valid = (state == ERR)",
      {"result_of_a_sample", "under_way_by_state", "result_in_its_clock"}),
+    ("nlms", "lms_ctrl.v", "assign out_valid = (state == ERR) & ~stall",
+     "assign out_valid = ((state == ERR) & ~stall) | (state == IDLE)", {"result_of_a_sample"}),
     ("sign_lms", "sign_lms_ctrl.v", "IDLE:    state <= in_valid ? L_R : IDLE", "IDLE:    state <= IDLE",
      {"takes_what_is_offered"}),
     ("rls, fixed point", "rls_fixed_core.v", "out_valid <= ~rst & (state == OUT_W) & ~stall",
