@@ -4,7 +4,7 @@ import re
 import sys
 
 from cores import CORES, HERE, sources, states
-from solver import Trial, ask
+from solver import Trial, all_broken, prove
 
 TOP = "control_properties"
 # Clocks beyond a sample: the reset, the clearing and some in which the source or a unit lets the core wait.
@@ -90,19 +90,15 @@ def run(scratch):
                for core, file, right, wrong, _ in BUGS]
     left_out = [trial(core, right, ["-c", "-t", clocks(core)], "-DSTATES", (file, right, wrong))
                 for core, file, right, wrong, _ in LEFT_OUT]
-    answers = ask(scratch, proofs + planted + left_out)
-    for question, answer in zip(proofs, answers):
-        if not answer.passed:
-            sys.exit(f"{question.name}: not passed\n{answer.text}")
+    answers = prove("control", scratch, proofs, planted + left_out)
     broken = set()
-    for (core, _, right, wrong, wanted), answer in zip(BUGS, answers[len(proofs):]):
+    for (core, _, right, wrong, wanted), answer in zip(BUGS, answers):
         found = answer.broken(properties)
         if not found & wanted:
             sys.exit(f"{core}: {right} -> {wrong}: broke {found or 'nothing'}, wanted one of {wanted}\n{answer.text}")
         broken |= found
-    if properties - broken:
-        sys.exit(f"no bug breaks {sorted(properties - broken)}")
-    for (core, *_, state), answer in zip(LEFT_OUT, answers[len(proofs) + len(planted):]):
+    all_broken(properties, broken)
+    for (core, *_, state), answer in zip(LEFT_OUT, answers[len(planted):]):
         if answer.passed or f"Unreached cover statement at {TOP}: {state.lower()}_reached" not in answer.text:
             sys.exit(f"{core}: {state} is reached without the way to it\n{answer.text}")
     print(f"control, by induction in {len(CORES)} cores: {', '.join(sorted(properties - bounded))}")

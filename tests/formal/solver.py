@@ -57,6 +57,32 @@ def ask(scratch, trials):
         return list(workers.map(answer, trials))
 
 
+def prove(part, scratch, proofs, others):
+    """The answers to the other trials; a proof that is none ends the run."""
+    answers = ask(scratch, proofs + others)
+    for question, answer in zip(proofs, answers):
+        if not answer.passed:
+            sys.exit(f"{part}, {question.name}: not passed\n{answer.text}")
+    return answers[len(proofs):]
+
+
+def all_broken(properties, broken):
+    """Ends the run where a property holds under every planted bug."""
+    if properties - broken:
+        sys.exit(f"no bug breaks {sorted(properties - broken)}")
+
+
+def break_each(planted, answers, properties):
+    """Ends the run where a planted bug breaks none of the properties, or a property is broken by none."""
+    broken = set()
+    for question, answer in zip(planted, answers):
+        found = answer.broken(properties)
+        if not found:
+            sys.exit(f"{question.name}: planted, and broke nothing\n{answer.text}")
+        broken |= found
+    all_broken(properties, broken)
+
+
 def answer(trial):
     """What the solver says of a trial; that it is missing or fails ends the run."""
     design = trial.folder / "design.smt2"
