@@ -26,7 +26,7 @@ use crate::metrics::sine::fit::{SwingClock, SwingFit, fit_swing};
 use crate::metrics::theory::bound::{LeastNoise, filter_bound_at, noise_power_gain};
 use crate::metrics::theory::learning::{Learning, NOT_FROM_ONE_RECORD};
 use crate::metrics::theory::prediction::{lags_needed, predict, prediction_lack};
-use crate::metrics::trial::noise_delay::{OverBound, put_bound, put_bound_curve, widen_over_bound};
+use crate::metrics::trial::noise_delay::OverBound;
 use crate::metrics::trial::predicted::DC_GAIN_PREDICTED;
 use crate::metrics::trial::readaptation;
 use crate::metrics::trial::readaptation::{GainUnits, adapts};
@@ -446,11 +446,6 @@ fn measure_bound(
     let without: Vec<Result<LeastNoise, Unavailable>> = (0..raw.blocks())
         .map(|block| at(delay.value, &raw.autocovariance_without(block)))
         .collect();
-    let left_out: Vec<f64> = without
-        .iter()
-        .flatten()
-        .map(|least| least.noise_gain)
-        .collect();
     let bound = at(delay.value, &autocovariance);
     let over = response.by_weights(facts, |frozen, weights| {
         let delay_s = frozen.delay_s(clock.frequency_hz, clock.sample_period_s);
@@ -464,12 +459,5 @@ fn measure_bound(
         bound: &bound,
         bounds_without: &without,
     };
-    of.put(facts, over.as_ref(), metrics);
-    let at = |delay| at(delay, &autocovariance).ok();
-    let bound = bound.map(|least| (least.over_delay(&delay, at, &left_out), least));
-    if over.is_none() {
-        widen_over_bound(&delay, at, metrics);
-    }
-    put_bound(bound, facts, delay.value, clock.sample_period_s, metrics);
-    put_bound_curve(facts, &autocovariance, clock.sample_period_s, metrics);
+    of.put_at(&delay, facts, over.as_ref(), clock.sample_period_s, metrics);
 }

@@ -10,7 +10,7 @@ use crate::metrics::key::metric::{Applies, MetricKey, Table};
 use crate::metrics::noise::autocovariance::LaggedProducts;
 use crate::metrics::record::FilterFacts;
 use crate::metrics::theory::bound::{
-    LeastNoise, NoiseDelayBound, bound_taps, filter_bound, noise_power_gain,
+    LeastNoise, NoiseDelayBound, bound_taps, filter_bound, filter_bound_at, noise_power_gain,
 };
 use crate::units;
 
@@ -63,7 +63,7 @@ impl LeastNoise {
     /// The bound is made of parabolas in the delay: its extremes over the short interval are at the ends
     /// unless the lowest point lies inside, which the value in the middle stands for. The scatter of the
     /// autocovariance adds in quadrature; the two are nearly independent.
-    pub(crate) fn over_delay(
+    fn over_delay(
         &self,
         delay_samples: &Estimate,
         at: impl Fn(f64) -> Option<Self>,
@@ -81,7 +81,7 @@ impl LeastNoise {
 
 /// Enters the noise-delay bound with the delay it holds at, the taps that reach it and the white-noise
 /// figure beside it.
-pub(crate) fn put_bound(
+fn put_bound(
     bound: Result<(Estimate, LeastNoise), Unavailable>,
     facts: &FilterFacts,
     delay_samples: f64,
@@ -107,7 +107,7 @@ pub(crate) fn put_bound(
 /// oldest sample that the filter weighs, for white noise and for the colour of raw's.
 ///
 /// There is no curve of a single tap, which delays by whole samples.
-pub(crate) fn put_bound_curve(
+fn put_bound_curve(
     facts: &FilterFacts,
     autocovariance: &[f64],
     sample_period_s: f64,
@@ -157,15 +157,37 @@ pub(crate) struct OverBound<'a> {
 }
 
 impl OverBound<'_> {
+    /// Enters bound, curve of the bound and noise gain over it.
+    ///
+    /// * `delay_samples`: delay that the bound is taken at.
+    /// * `learned`: what weights that forget nothing add to the noise gain over it.
+    pub(crate) fn put_at(
+        &self,
+        delay_samples: &Estimate,
+        facts: &FilterFacts,
+        learned: Option<&Learned>,
+        sample_period_s: f64,
+        metrics: &mut ChannelMetrics,
+    ) {
+        self.put(facts, learned, metrics);
+        let autocovariance = self.raw.autocovariance();
+        put_bound_curve(facts, &autocovariance, sample_period_s, metrics);
+        let without = self.bounds_without.iter().flatten();
+        let without: Vec<f64> = without.map(|least| least.noise_gain).collect();
+        let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
+        let bound = self.bound.clone();
+        let bound = bound.map(|least| (least.over_delay(delay_samples, at, &without), least));
+        if learned.is_none() {
+            widen_over_bound(delay_samples, at, metrics);
+        }
+        let delay_samples = delay_samples.value;
+        put_bound(bound, facts, delay_samples, sample_period_s, metrics);
+    }
+
     /// Enters `noise_gain_over_bound`.
     ///
     /// * `learned`: what weights that forget nothing add to it.
-    pub(crate) fn put(
-        &self,
-        facts: &FilterFacts,
-        learned: Option<&Learned>,
-        metrics: &mut ChannelMetrics,
-    ) {
+    fn put(&self, facts: &FilterFacts, learned: Option<&Learned>, metrics: &mut ChannelMetrics) {
         let bound = match self.bound {
             Ok(bound) => bound.noise_gain,
             Err(reason) => return metrics.miss(&NOISE_GAIN_OVER_BOUND, reason.clone()),
@@ -232,7 +254,7 @@ impl OverBound<'_> {
 /// with the delay to first order. There the slope at the delay that was found is all noise, and its square
 /// holds twice what the curvature does: of `b(t) = c t^2` about the lowest point, with t of the variance
 /// `s^2`, the slope gives `(2 c t s)^2`, in the mean `4 c^2 s^4`, and the bound scatters by `2 c^2 s^4`.
-pub(crate) fn widen_over_bound(
+fn widen_over_bound(
     delay_samples: &Estimate,
     bound: impl Fn(f64) -> Option<LeastNoise>,
     metrics: &mut ChannelMetrics,

@@ -1,9 +1,6 @@
 //! What theory predicts of a filter at rest, with the noise that the record shows.
 
-use super::noise_delay::{
-    NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, OverBound, put_bound, put_bound_curve,
-    widen_over_bound,
-};
+use super::noise_delay::{NOISE_DELAY_BOUND_NOISE_GAIN, NOISE_GAIN_OVER_BOUND, OverBound};
 use crate::metrics::estimate::influence::{Spread, spread};
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::table::ChannelMetrics;
@@ -115,20 +112,7 @@ fn measure_bound(
         let least = least.map_or(f64::NAN, |least| least.noise_gain);
         noise_power_gain(weights, &autocovariance) / least
     });
-    of.put(facts, over.as_ref(), metrics);
-    put_bound_curve(facts, &autocovariance, record.sample_period_s, metrics);
-    let bounds: Vec<f64> = of
-        .bounds_without
-        .iter()
-        .filter_map(|bound| Some(bound.as_ref().ok()?.noise_gain))
-        .collect();
-    let at = |delay| filter_bound_at(&facts.shape, delay, &autocovariance).ok();
-    let bound = of.bound.clone();
-    let bound = bound.map(|least| (least.over_delay(delay, at, &bounds), least));
-    if over.is_none() {
-        widen_over_bound(delay, at, metrics);
-    }
-    put_bound(bound, facts, delay.value, record.sample_period_s, metrics);
+    of.put_at(delay, facts, over.as_ref(), record.sample_period_s, metrics);
 }
 
 /// Mean of the values with each of `blocks` blocks of equal length left out.
