@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::measure::{Channels, measure_repeat};
 use super::progress::{Progress, Unfinished};
-use super::records::{RecordLength, count};
+use super::records::RecordLength;
 use super::repeat_pool::{Repeat, RepeatPool, keep_finite};
 use super::simulate::{Faults, Simulation, simulate};
 use super::theory::theory;
@@ -102,8 +102,7 @@ fn mean_true_rates(plan: &Plan, simulation: &Simulation) -> [f64; 3] {
     let first = RecordLength::new(scenario, plan.sample_period_s()).warm_up;
     let mut means = [0.0; 3];
     for (mean, gyro) in means.iter_mut().zip(&simulation.gyros) {
-        let truth = gyro.truth_deg_per_h.rates().from(first);
-        *mean = truth.iter().sum::<f64>() / count(truth.len());
+        *mean = gyro.truth_deg_per_h.rates().from(first).mean();
     }
     means
 }

@@ -18,6 +18,4 @@ pub(super) mod overlapping;
 pub(super) mod pulses;
 pub(super) mod sampling;
 pub(super) mod stream;
-pub(super) mod sums;
 pub(super) mod variants;
-mod walk;

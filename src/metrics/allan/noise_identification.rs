@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::angle::angles_at_multiples;
+use super::angle::{angles_at_multiples, starts_of_parts};
 
 /// Fewest block means from which the lag-1 autocorrelation tells one power law from the next.
 const MEANS_MIN: usize = 30;
@@ -147,6 +147,7 @@ pub(crate) fn identify_noise_of_record(
     factors: &[usize],
     order: usize,
 ) -> Vec<Option<PowerLaw>> {
+    let (mean, starts) = starts_of_parts(rates);
     let mut identified = Vec::with_capacity(factors.len());
     let mut left = factors;
     while !left.is_empty() {
@@ -156,7 +157,7 @@ pub(crate) fn identify_noise_of_record(
         });
         let together = held.take_while(|held| *held <= ANGLES_HELD).count().max(1);
         let (now, later) = left.split_at(together);
-        let angles = angles_at_multiples(rates, now, MEANS_MAX);
+        let angles = angles_at_multiples(rates, (mean, &starts), now, MEANS_MAX);
         let identify = |(angle, &m): (&Vec<f64>, &usize)| {
             let means = angle.windows(2).map(|two| (two[1] - two[0]) / m as f64);
             identify_by_means(means.collect(), order)

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::angle::sums::second_difference_sums_of_record;
 use super::bridges::BridgedAngle;
 use super::gaps::{missing_stretches, second_difference_sums_with_gaps};
-use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::interval::round_to_count;
 use crate::metrics::estimate::value::Estimate;

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::angle::angle_about_mean;
+use super::angle::sums::second_difference_sums_of_record;
 use super::bridges::BridgedAngle;
 use super::combined_freedom::{Differences, combined_degrees_of_freedom};
 use super::noise_identification::{PowerLaw, identify_noise, identify_noise_of_record};
 use super::overlapping::AllanPoint;
-use super::sums::second_difference_sums_of_record;
 use crate::metrics::estimate::interval;
 use crate::metrics::estimate::value::CONFIDENCE;
 use crate::signal::Bridge;

@@ -116,9 +116,8 @@ impl LaggedProducts {
         let mut deviations = Vec::with_capacity(CHUNK + largest_lag);
         for block in 0..blocks {
             let block_end = values.len() * (block + 1) / blocks;
-            let first = values.len() * block / blocks;
-            across.push(pairs_across(values, centre, first..block_end, largest_lag));
             let mut start = values.len() * block / blocks;
+            across.push(pairs_across(values, centre, start..block_end, largest_lag));
             while start < block_end {
                 let end = (start + CHUNK).min(block_end);
                 let reach = (end + largest_lag).min(values.len());

@@ -3,16 +3,19 @@
 //! Work is cut into parts of fixed size and summed in their order: the number of threads leaves no
 //! trace in the result.
 
+pub(crate) mod sums;
+mod walk;
+
 use rayon::prelude::*;
 
 use crate::simd::{LANES, Lanes, Simd, with_wide_vectors};
 
 /// Samples that one thread integrates at a time.
-pub(crate) const PART: usize = 1 << 16;
+const PART: usize = 1 << 16;
 
 /// Second differences handled per pass over the cache: every tau visits a block before the next
 /// block is read, so that short ones read memory once altogether.
-pub(crate) const BLOCK: usize = 2048;
+const BLOCK: usize = 2048;
 
 /// Angle about the mean rate, `[n + 1]`, in units of (deg/h) times one sample period, from zero on.
 ///
@@ -31,22 +34,23 @@ pub(crate) fn angle_about_mean(rate_deg_per_h: &[f64]) -> Vec<f64> {
 
 /// Those of the same angles that lie at multiples of an averaging factor, 0 included, for each factor.
 ///
+/// * `mean`, `starts`: of the record, by [`starts_of_parts`].
 /// * `blocks`: most multiples that are wanted beside 0.
 ///
 /// All angles of a long record are as large as the record itself: here they exist part by part.
 pub(crate) fn angles_at_multiples(
     rates: &[f64],
+    (mean, starts): (f64, &[f64]),
     factors: &[usize],
     blocks: usize,
 ) -> Vec<Vec<f64>> {
-    let (mean, starts) = starts_of_parts(rates);
     let parts = rates.par_chunks(PART).zip(starts).enumerate();
     let found: Vec<Vec<Vec<f64>>> = parts
         .map_init(
             || vec![0.0; PART],
             |angle, (part, (rates, start))| {
                 let angle = &mut angle[..rates.len()];
-                integrate(rates, mean, start, angle);
+                integrate(rates, mean, *start, angle);
                 // Behind the first rate of the part stands the angle of index `before + 1`.
                 let before = part * PART;
                 let of_factor = |&m: &usize| -> Vec<f64> {
@@ -80,12 +84,22 @@ pub(crate) fn starts_of_parts(rates: &[f64]) -> (f64, Vec<f64>) {
     (near + rest, starts)
 }
 
+/// Samples from one known angle to the next, where not all of them are held.
+const CELL: usize = 128;
+
 /// The angles behind `sum` after each rate of a part.
-pub(crate) fn integrate(rates: &[f64], mean: f64, mut sum: f64, angles: &mut [f64]) {
+fn integrate(rates: &[f64], mean: f64, mut sum: f64, angles: &mut [f64]) {
     for (angle, rate) in angles.iter_mut().zip(rates) {
         let step = rate - mean;
         sum += if step.is_nan() { 0.0 } else { step };
         *angle = sum;
+    }
+}
+
+/// Adds the sums of a part to those of the parts before it.
+fn add(sums: &mut [f64], more: &[f64]) {
+    for (sum, more) in sums.iter_mut().zip(more) {
+        *sum += more;
     }
 }
 
@@ -140,9 +154,7 @@ pub(crate) fn second_difference_sums(angle: &[f64], factors: &[usize]) -> Vec<f6
         for start in (first..angle.len().min(first + PART)).step_by(BLOCK) {
             add_squares(&mut part, factors, angle, (start, start + BLOCK));
         }
-        for (sum, part) in sums.iter_mut().zip(part) {
-            *sum += part;
-        }
+        add(&mut sums, &part);
     }
     sums
 }
@@ -234,6 +246,7 @@ fn squares_in_lanes<S: Simd, const N: usize>(simd: S, parts: [[&[f64]; 3]; N]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+
     #[test]
     fn angles_at_multiples_are_those_of_the_array() {
         let longest: Vec<f64> = (0..2 * PART + 77)
@@ -244,7 +257,8 @@ mod tests {
             let rates = &longest[..samples];
             let angle = angle_about_mean(rates);
             for blocks in [1, 50, usize::MAX] {
-                let found = angles_at_multiples(rates, &factors, blocks);
+                let (mean, starts) = starts_of_parts(rates);
+                let found = angles_at_multiples(rates, (mean, &starts), &factors, blocks);
                 for (found, m) in found.iter().zip(factors) {
                     let multiples = angle.iter().step_by(m).take(blocks.saturating_add(1));
                     let wanted: Vec<f64> = multiples.copied().collect();

@@ -5,20 +5,13 @@
 
 use rayon::prelude::*;
 
-use super::angle::{add_squares, mean_rate, squared_second_differences};
 use super::walk::second_difference_sums_by_walking;
-
-/// Samples whose short averaging times one thread handles at a time.
-const PART: usize = 1 << 16;
+use super::{
+    BLOCK, CELL, PART, add, add_squares, integrate, mean_rate, squared_second_differences,
+};
 
 /// From this averaging factor on the angles of a part would be a small share of what it needs.
 const FAR: usize = 1 << 15;
-
-/// Second differences of one averaging time taken in a row.
-const BLOCK: usize = 2048;
-
-/// Samples from one known angle to the next.
-const CELL: usize = 128;
 
 /// Angles that a pass over all far averaging times keeps in the cache, 512 kB.
 const FAR_CACHE: usize = 1 << 16;
@@ -94,18 +87,11 @@ struct Part {
     end: f64,
 }
 
-fn add(sums: &mut [f64], more: &[f64]) {
-    for (sum, more) in sums.iter_mut().zip(more) {
-        *sum += more;
-    }
-}
-
 /// Appends the angles behind `sum` after each of the rates.
-fn integrate(rates: &[f64], mean: f64, mut sum: f64, angle: &mut Vec<f64>) {
-    angle.extend(rates.iter().map(|rate| {
-        sum += rate - mean;
-        sum
-    }));
+fn append(rates: &[f64], mean: f64, sum: f64, angle: &mut Vec<f64>) {
+    let before = angle.len();
+    angle.resize(before + rates.len(), 0.0);
+    integrate(rates, mean, sum, &mut angle[before..]);
 }
 
 fn short_times(
@@ -119,7 +105,7 @@ fn short_times(
     let end = (start + PART + reach).min(rates.len());
     angle.clear();
     angle.push(0.0);
-    integrate(&rates[start..end], mean, 0.0, angle);
+    append(&rates[start..end], mean, 0.0, angle);
     let mut sums = vec![0.0; factors.len()];
     for first in (0..PART).step_by(BLOCK) {
         add_squares(&mut sums, factors, angle, (first, first + BLOCK));
@@ -150,7 +136,7 @@ fn far_times(
         let first = cells[row / CELL];
         angle.push(first);
         let last = (row + width - 1).min(rates.len());
-        integrate(&rates[row..last], mean, first, angle);
+        append(&rates[row..last], mean, first, angle);
     }
     let of_factor = |&m: &usize| {
         // Rows but the last are whole, so that the angles of a row one tau on are m / spacing rows
@@ -174,7 +160,7 @@ fn far_times(
 
 #[cfg(test)]
 mod tests {
-    use super::super::angle::{angle_about_mean, second_difference_sums};
+    use super::super::{angle_about_mean, second_difference_sums};
     use super::*;
 
     #[test]

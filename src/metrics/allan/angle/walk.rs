@@ -6,12 +6,9 @@
 
 use rayon::prelude::*;
 
-use super::angle::{
-    BLOCK, PART, add_squares, integrate, squared_second_differences, starts_of_parts,
+use super::{
+    BLOCK, CELL, PART, add, add_squares, integrate, squared_second_differences, starts_of_parts,
 };
-
-/// Samples from one known angle to the next.
-const CELL: usize = 128;
 
 /// Averaging factors of which two parts of the angles hold all differences that start in the first.
 const NEAR: usize = PART / 2;
@@ -19,8 +16,8 @@ const NEAR: usize = PART / 2;
 /// Factors that are walked at once: one addition does not wait for another.
 const AT_ONCE: usize = 4;
 
-/// As [`second_difference_sums`](super::angle::second_difference_sums) of
-/// [`angle_about_mean`](super::angle::angle_about_mean), of a record that misses nothing.
+/// As [`second_difference_sums`](super::second_difference_sums) of
+/// [`angle_about_mean`](super::angle_about_mean), of a record that misses nothing.
 pub(crate) fn second_difference_sums_by_walking(rates: &[f64], factors: &[usize]) -> Vec<f64> {
     let (mean, starts) = starts_of_parts(rates);
     let parts = rates.par_chunks(PART).zip(&starts);
@@ -63,12 +60,6 @@ pub(crate) fn second_difference_sums_by_walking(rates: &[f64], factors: &[usize]
         if *m < NEAR { near.next() } else { far.next() }
     };
     factors.iter().filter_map(next).collect()
-}
-
-fn add(sums: &mut [f64], more: &[f64]) {
-    for (sum, more) in sums.iter_mut().zip(more) {
-        *sum += more;
-    }
 }
 
 /// The angles about the mean rate, to be integrated where they are needed.
@@ -210,7 +201,7 @@ impl Walker {
 
 #[cfg(test)]
 mod tests {
-    use super::super::angle::{angle_about_mean, second_difference_sums};
+    use super::super::{angle_about_mean, second_difference_sums};
     use super::*;
 
     #[test]
