@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 use fogbench::experiment::{
     Observer, Progress, SuiteError, SuiteOptions, SuiteOutcome, plan_suite, run_suite,
@@ -15,6 +16,9 @@ use crate::support::{scratch, write};
 
 /// A second of the rate model.
 const SHORT: &str = "duration_s = 1.0\nwarm_up_s = 0.5\nfidelity = \"rate\"\n";
+
+/// How long a block waits for another run to end.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 fn scenario(folder: &Path, name: &str, text: &str) -> PathBuf {
     let text = format!("schema = 1\nname = \"{name}\"\n{text}");
@@ -109,6 +113,8 @@ fn a_panic_anywhere_fails_one_run_and_the_suite_has_its_verdict() {
 /// Stops the suite once its runs have simulated for `stop_s`, or one of them has finished.
 struct Stops {
     stop_s: f64,
+    /// A run whose blocks are longer waits for another that ends first, whatever the threads do.
+    waits_beyond_s: f64,
     advanced_s: Mutex<f64>,
     stopped: AtomicBool,
     finished: AtomicU32,
@@ -118,6 +124,7 @@ impl Stops {
     fn after(stop_s: f64) -> Self {
         Self {
             stop_s,
+            waits_beyond_s: f64::INFINITY,
             advanced_s: Mutex::new(0.0),
             stopped: AtomicBool::new(false),
             finished: AtomicU32::new(0),
@@ -131,6 +138,12 @@ impl Progress for Stops {
         *advanced_s += simulated_s;
         self.stopped
             .fetch_or(*advanced_s >= self.stop_s, Ordering::SeqCst);
+        drop(advanced_s);
+        let began = Instant::now();
+        while simulated_s > self.waits_beyond_s && !self.should_stop() && began.elapsed() < PATIENCE
+        {
+            std::thread::sleep(Duration::from_millis(5));
+        }
     }
 
     fn should_stop(&self) -> bool {
@@ -203,7 +216,10 @@ fn what_ended_before_a_stop_stays_and_a_stopped_campaign_has_not_failed() {
         threads: 2,
         ..SuiteOptions::new(folder.path().join("out"))
     };
-    let observer = Stops::after(f64::INFINITY);
+    let observer = Stops {
+        waits_beyond_s: 2.0,
+        ..Stops::after(f64::INFINITY)
+    };
     let outcome = run_suite(&plans, &options, &observer).expect("a writable folder");
     assert!(!outcome.broken);
     assert_eq!(
@@ -230,7 +246,7 @@ impl Progress for Stuck {
     fn advanced(&self, _simulated_s: f64) {
         self.is_stopped.store(true, Ordering::SeqCst);
         while !self.is_abandoned.load(Ordering::SeqCst) {
-            std::thread::sleep(std::time::Duration::from_millis(5));
+            std::thread::sleep(Duration::from_millis(5));
         }
     }
 
@@ -276,7 +292,6 @@ fn a_run_that_is_given_up_writes_nothing_more() {
 mod process {
     use std::io::Read;
     use std::process::{Child, Command, Stdio};
-    use std::time::{Duration, Instant};
 
     use super::*;
     use crate::support::{code, fogbench, repository, stderr, stdout};
